@@ -1,0 +1,1 @@
+//! Path tracing of daylight through shades: acceleration structure, materials, emitters, integrator, film.

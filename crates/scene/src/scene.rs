@@ -1,0 +1,209 @@
+//! What scene files say: surfaces and modifiers, in file order, with positions for error messages.
+
+use std::path::PathBuf;
+use sunpeak_core::{Location, Rgb, Vec3};
+use sunpeak_sky::SkyDistribution;
+
+/// Index of a modifier in [`Scene::modifiers`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ModifierId(pub usize);
+
+/// Everything the scene files say. Immutable once loaded.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// Materials and patterns, in file order; a name may be defined again, later surfaces then mean the later one.
+    pub modifiers: Vec<Modifier>,
+    /// Surfaces and sources, in file order.
+    pub surfaces: Vec<Surface>,
+}
+
+/// A named material or pattern.
+#[derive(Clone, Debug)]
+pub struct Modifier {
+    /// Its name in the file.
+    pub name: String,
+    /// What it is modified by; `None` is `void`.
+    pub parent: Option<ModifierId>,
+    /// What it is.
+    pub kind: ModifierKind,
+    /// Where it stands.
+    pub location: Location,
+}
+
+/// A material or a pattern.
+#[derive(Clone, Debug)]
+pub enum ModifierKind {
+    /// Says how a surface reflects, transmits or emits.
+    Material(Material),
+    /// Multiplies what the material above it says, by direction or place.
+    Pattern(Pattern),
+}
+
+/// Patterns that are understood.
+#[derive(Clone, Debug)]
+pub enum Pattern {
+    /// `brightfunc … skybr skybright.cal` or `skybright perezlum.cal`: the sky over the ray's direction.
+    Sky(SkyDistribution),
+}
+
+/// Materials, with Radiance's arguments (reference manual, "Materials").
+#[derive(Clone, Debug)]
+pub enum Material {
+    /// Uncoloured highlights over a coloured diffuse surface.
+    Plastic(Ward),
+    /// Highlights in the material's colour.
+    Metal(Ward),
+    /// Translucent: `transmissivity` of what is not reflected goes through, `specular_transmission` of that straight.
+    Trans {
+        /// Reflection as in plastic.
+        ward: Ward,
+        /// Fraction of penetrating light that is transmitted.
+        transmissivity: f64,
+        /// Fraction of the transmitted light that is not diffusely scattered.
+        specular_transmission: f64,
+    },
+    /// A thin pane: transmissivity at normal incidence per channel, and refractive index.
+    Glass {
+        /// Fraction not absorbed in one crossing of the pane.
+        transmissivity: Rgb,
+        /// Index of refraction (1.52 unless given).
+        index: f64,
+    },
+    /// A solid of glass or the like.
+    Dielectric {
+        /// Transmission per unit of length (one metre) in the volume.
+        transmission: Rgb,
+        /// Index of refraction.
+        index: f64,
+        /// Hartmann's constant, dispersion.
+        hartmann: f64,
+    },
+    /// A planar mirror that makes virtual sources; `alternate` is shown to rays that are not shadow rays.
+    Mirror {
+        /// Reflectance.
+        reflectance: Rgb,
+        /// Material for view rays, if named (`Some(None)` is `void`: as a mirror, makes no virtual sources… see manual).
+        alternate: Option<Option<ModifierId>>,
+    },
+    /// An emitter [W sr⁻¹ m⁻²].
+    Light(Rgb),
+    /// An emitter that looks like another material when seen directly (`None`: invisible, `void`).
+    Illum {
+        /// Radiance as a light.
+        radiance: Rgb,
+        /// Material that view rays see; `None` for a plain light.
+        alternate: Option<Option<ModifierId>>,
+    },
+    /// An emitter that lights only within `max_radius` directly (0: by reflection and view only; negative: never
+    /// cast light, but visible).
+    Glow {
+        /// Radiance.
+        radiance: Rgb,
+        /// Largest distance at which it is sampled as a light.
+        max_radius: f64,
+    },
+    /// An emitter confined to a cone.
+    Spotlight {
+        /// Radiance.
+        radiance: Rgb,
+        /// Full opening angle [deg].
+        angle_deg: f64,
+        /// Axis of the cone; its length is the distance of the focus behind the surface.
+        axis: Vec3,
+    },
+    /// A measured or simulated BSDF.
+    Bsdf(BsdfMaterial),
+}
+
+/// Arguments shared by plastic, metal and trans: the isotropic Ward model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ward {
+    /// Diffuse colour (colour of everything for metal).
+    pub color: Rgb,
+    /// Fraction reflected specularly.
+    pub specularity: f64,
+    /// RMS slope of the facets.
+    pub roughness: f64,
+}
+
+/// `BSDF` and `aBSDF`.
+#[derive(Clone, Debug)]
+pub struct BsdfMaterial {
+    /// `true` for `aBSDF`: the material for peak extraction.
+    pub extract_peak: bool,
+    /// Thickness for proxy geometry (0: none) [m], always 0 for `aBSDF`.
+    pub thickness: f64,
+    /// The XML file, found.
+    pub file: PathBuf,
+    /// Up vector in world axes (the transform of the file applied).
+    pub up: Vec3,
+    /// Does an xform mirror the frame (x = -(y cross z))?
+    pub mirrored: bool,
+    /// Diffuse reflectance added at the front.
+    pub front_diffuse: Rgb,
+    /// Diffuse reflectance added at the back.
+    pub back_diffuse: Rgb,
+    /// Diffuse transmittance added.
+    pub diffuse_transmission: Rgb,
+}
+
+/// A surface or source.
+#[derive(Clone, Debug)]
+pub struct Surface {
+    /// Its name in the file.
+    pub name: String,
+    /// What it is made of; `None` (`void`) is invisible.
+    pub modifier: Option<ModifierId>,
+    /// Its geometry in world axes.
+    pub shape: Shape,
+    /// Where it stands.
+    pub location: Location,
+}
+
+/// Geometry, in world axes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// A flat polygon; the front is where the vertices turn counter-clockwise. Holes by seams.
+    Polygon(Vec<Vec3>),
+    /// `sphere`, or `bubble` if `inward`.
+    Sphere {
+        /// Centre.
+        center: Vec3,
+        /// Radius, positive [m].
+        radius: f64,
+        /// Does the normal point to the centre?
+        inward: bool,
+    },
+    /// `cone`, `cylinder`, or `cup`, `tube` if `inward`. Open at both ends.
+    Cone {
+        /// Centre of the first end.
+        start: Vec3,
+        /// Centre of the second end.
+        end: Vec3,
+        /// Radius at `start` [m].
+        start_radius: f64,
+        /// Radius at `end` [m].
+        end_radius: f64,
+        /// Does the normal point to the axis?
+        inward: bool,
+    },
+    /// A disc, or a disc with a hole.
+    Ring {
+        /// Centre.
+        center: Vec3,
+        /// Unit normal.
+        normal: Vec3,
+        /// Inner radius [m].
+        inner_radius: f64,
+        /// Outer radius [m].
+        outer_radius: f64,
+    },
+    /// A cone of directions at infinity.
+    Source {
+        /// Unit vector towards it.
+        direction: Vec3,
+        /// Full angle [deg].
+        angle_deg: f64,
+    },
+}
+
