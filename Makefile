@@ -1,0 +1,76 @@
+# One command surface for people, hooks and CI. `make help` lists the targets.
+#
+# Needed: Python 3.11+, a Rust toolchain (cargo), a C compiler. Everything else is locked in requirements.lock and
+# Cargo.lock and lands in .venv and target.
+
+SHELL := /bin/bash
+.SHELLFLAGS := -eu -o pipefail -c
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+
+PYTHON ?= python3
+CARGO ?= cargo
+DEMO_DIR ?= demo
+VENV := .venv
+BIN := $(CURDIR)/$(VENV)/bin
+# Every crate but the Python module, which cannot be linked as a program; the Python tests are its tests.
+CRATES := --workspace --exclude sunpeak-python
+RUST_FILES := Cargo.toml Cargo.lock $(shell find crates -type f)
+
+# PyO3 asks this interpreter, so that cargo and maturin build the same thing.
+export PYO3_PYTHON := $(BIN)/python
+export VIRTUAL_ENV := $(CURDIR)/$(VENV)
+unexport PYTHONHOME PYTHONPATH
+
+.PHONY: help build demo test test-rust test-python lint fmt bench docs lock clean
+
+help: ## Say what can be made
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 20
+
+build: $(VENV)/.built ## Build the core and install it into .venv
+
+demo: build ## The main job: the same room without and with peak extraction, into demo/
+	$(BIN)/sunpeak demo -o $(DEMO_DIR)
+
+test: test-rust test-python ## All tests
+
+test-rust: $(VENV)/.installed
+	$(CARGO) test --locked $(CRATES)
+
+test-python: build
+	$(BIN)/python -m pytest
+
+lint: $(VENV)/.installed ## Formatting, clippy, ruff, mypy
+	$(CARGO) fmt --all --check
+	$(CARGO) clippy --locked --workspace --all-targets -- -D warnings
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+fmt: $(VENV)/.installed ## Format everything
+	$(CARGO) fmt --all
+	$(BIN)/ruff check --fix-only .
+	$(BIN)/ruff format .
+
+bench: build ## Benchmarks
+	$(CARGO) bench --locked $(CRATES)
+
+docs: ## The crates' documentation, into target/doc
+	$(CARGO) doc --locked $(CRATES) --no-deps
+
+lock: ## Choose new versions of the Python dependencies (needs uv)
+	uv pip compile --universal --generate-hashes --no-emit-find-links --no-header --python-version 3.11 \
+		--upgrade --group dev pyproject.toml -o requirements.lock
+
+clean: ## Remove what was built
+	rm -rf $(VENV) target $(DEMO_DIR) python/sunpeak/*.so
+	find . -name __pycache__ -not -path './.venv/*' -prune -exec rm -rf {} +
+
+$(VENV)/.installed: requirements.lock tools/make_venv.py
+	$(PYTHON) tools/make_venv.py $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
+	touch $@
+
+$(VENV)/.built: $(VENV)/.installed pyproject.toml $(RUST_FILES)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	touch $@
