@@ -44,10 +44,9 @@ def main() -> None:
 def has_pip(folder: pathlib.Path) -> bool:
     """Whether the environment is there, with pip."""
     python = folder / "bin" / "python"
-    return (
-        python.exists()
-        and subprocess.run([python, "-m", "pip", "--version"], capture_output=True).returncode == 0
-    )
+    if not python.exists():
+        return False
+    return subprocess.run([python, "-m", "pip", "--version"], check=False, capture_output=True).returncode == 0
 
 
 def install_pip(folder: pathlib.Path) -> None:

@@ -5,5 +5,17 @@ channels in Radiance's primaries [W sr⁻¹ m⁻²]; luminance [cd/m²] = 179 (0
 """
 
 from sunpeak._core import InputError, __version__
+from sunpeak.scattering import Bsdf, Samples, direction
+from sunpeak.skies import Place, Sky, SunPosition, sun_position
 
-__all__ = ["InputError", "__version__"]
+__all__ = [
+    "Bsdf",
+    "InputError",
+    "Place",
+    "Samples",
+    "Sky",
+    "SunPosition",
+    "__version__",
+    "direction",
+    "sun_position",
+]

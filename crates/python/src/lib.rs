@@ -1,6 +1,10 @@
 //! Python bindings of Sunpeak: conversions, error mapping and the release of the interpreter's lock; no algorithms.
 
+mod arrays;
+mod bsdf;
 mod error;
+mod sky;
+mod watch;
 
 use pyo3::prelude::*;
 
@@ -8,7 +12,11 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _core {
     #[pymodule_export]
+    use super::bsdf::PyBsdf;
+    #[pymodule_export]
     use super::error::InputError;
+    #[pymodule_export]
+    use super::sky::PySky;
 
     use pyo3::prelude::*;
 

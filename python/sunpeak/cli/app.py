@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from sunpeak import InputError, __version__
+from sunpeak.cli import sky
 
 EXIT_WRONG_INPUT = 1
 EXIT_INTERRUPTED = 130
@@ -22,6 +23,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+app.add_typer(sky.app, name="sky", rich_help_panel="Input")
 
 
 def show_version(wanted: bool) -> None:

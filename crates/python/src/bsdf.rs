@@ -1,0 +1,191 @@
+//! `Bsdf`: a scattering table with arrays of directions.
+
+use crate::arrays::{colours, directions, numbers, rows, vectors};
+use crate::error::{InputError, OrRaise};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
+use pyo3::prelude::*;
+use rayon::prelude::*;
+use std::path::PathBuf;
+use std::sync::Arc;
+use sunpeak_bsdf::{Bsdf, Mode, PeakRule};
+use sunpeak_core::{Rgb, Vec3, luminance};
+
+/// One product: front and back, reflection and transmission. Arrays are (n, 3) in the BSDF's frame.
+#[pyclass(frozen, name = "Bsdf", module = "sunpeak._core")]
+pub struct PyBsdf(pub Arc<Bsdf>);
+
+/// A peak rule by its name.
+pub fn peak_rule(name: &str) -> PyResult<PeakRule> {
+    match name {
+        "off" => Ok(PeakRule::Off),
+        "paper" => Ok(PeakRule::Paper),
+        "radiance" => Ok(PeakRule::Radiance),
+        "split" => Ok(PeakRule::Split),
+        _ => Err(InputError::new_err(format!("peak: {name:?}; expected split, radiance, paper or off"))),
+    }
+}
+
+fn mode(name: &str) -> PyResult<Mode> {
+    match name {
+        "transmission" => Ok(Mode::Transmission),
+        "reflection" => Ok(Mode::Reflection),
+        _ => Err(InputError::new_err(format!("mode: {name:?}; expected transmission or reflection"))),
+    }
+}
+
+/// One draw from both lobes.
+struct Draw {
+    w_out: Vec3,
+    weight: Rgb,
+    pdf: f64,
+    straight: bool,
+}
+
+#[pymethods]
+impl PyBsdf {
+    #[staticmethod]
+    fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let bsdf = py.detach(|| Bsdf::load(&path)).or_raise()?;
+        Ok(Self(Arc::new(bsdf)))
+    }
+
+    #[pyo3(signature = (w_in, w_out, colour, residual))]
+    fn evaluate<'py>(
+        &self,
+        py: Python<'py>,
+        w_in: PyReadonlyArray2<'py, f64>,
+        w_out: PyReadonlyArray2<'py, f64>,
+        colour: bool,
+        residual: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let rule = if residual { PeakRule::Split } else { PeakRule::Off };
+        let pairs = pairs(&w_in, &w_out)?;
+        let values = py.detach(|| {
+            pairs.par_iter().map(|&(a, b)| self.0.evaluate_smooth(a, b, rule)).collect::<Vec<_>>()
+        });
+        Ok(colours(py, &values, colour))
+    }
+
+    fn through<'py>(
+        &self,
+        py: Python<'py>,
+        w_in: PyReadonlyArray2<'py, f64>,
+        peak: &str,
+        colour: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let rule = peak_rule(peak)?;
+        let incident = directions(&w_in, "w_in")?;
+        let values = py.detach(|| incident.par_iter().map(|&w| self.0.through(w, rule)).collect::<Vec<_>>());
+        Ok(colours(py, &values, colour))
+    }
+
+    fn hemispherical<'py>(
+        &self,
+        py: Python<'py>,
+        w_in: PyReadonlyArray2<'py, f64>,
+        mode: &str,
+        colour: bool,
+        residual: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let rule = if residual { PeakRule::Split } else { PeakRule::Off };
+        let mode = self::mode(mode)?;
+        let incident = directions(&w_in, "w_in")?;
+        let values = py.detach(|| {
+            incident.par_iter().map(|&w| self.0.hemispherical_smooth(w, mode, rule)).collect::<Vec<_>>()
+        });
+        Ok(colours(py, &values, colour))
+    }
+
+    #[expect(clippy::type_complexity, reason = "a tuple of arrays is what Python unpacks")]
+    fn sample<'py>(
+        &self,
+        py: Python<'py>,
+        w_in: PyReadonlyArray2<'py, f64>,
+        u: PyReadonlyArray2<'py, f64>,
+        peak: &str,
+    ) -> PyResult<(
+        Bound<'py, PyArray2<f64>>,
+        Bound<'py, PyArray2<f64>>,
+        Bound<'py, PyArray1<f64>>,
+        Bound<'py, PyArray1<bool>>,
+    )> {
+        let rule = peak_rule(peak)?;
+        let incident = directions(&w_in, "w_in")?;
+        let numbers_in = vectors(&u, "u")?;
+        same_length(incident.len(), numbers_in.len(), "u")?;
+        let draws: Vec<Draw> = py.detach(|| {
+            incident.par_iter().zip(&numbers_in).map(|(&w, u)| self.draw(w, u.to_array(), rule)).collect()
+        });
+        let [outgoing, weights] = [|draw: &Draw| draw.w_out, |draw: &Draw| draw.weight]
+            .map(|part| rows(py, &draws.iter().map(part).collect::<Vec<_>>()));
+        let densities = numbers(py, draws.iter().map(|draw| draw.pdf).collect());
+        let straight = PyArray1::from_vec(py, draws.iter().map(|draw| draw.straight).collect());
+        Ok((outgoing, weights, densities, straight))
+    }
+
+    fn pdf<'py>(
+        &self,
+        py: Python<'py>,
+        w_in: PyReadonlyArray2<'py, f64>,
+        w_out: PyReadonlyArray2<'py, f64>,
+        peak: &str,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let rule = peak_rule(peak)?;
+        let pairs = pairs(&w_in, &w_out)?;
+        let values = py.detach(|| {
+            pairs
+                .par_iter()
+                .map(|&(a, b)| (1.0 - self.straight_probability(a, rule)) * self.0.pdf_smooth(a, b, rule))
+                .collect()
+        });
+        Ok(numbers(py, values))
+    }
+}
+
+impl PyBsdf {
+    /// Share of the samples that go straight: the peak's flux over all of it.
+    fn straight_probability(&self, w_in: Vec3, rule: PeakRule) -> f64 {
+        let through = luminance(self.0.through(w_in, rule));
+        if through <= 0.0 {
+            return 0.0;
+        }
+        let smooth = [Mode::Transmission, Mode::Reflection]
+            .map(|mode| luminance(self.0.hemispherical_smooth(w_in, mode, rule)));
+        through / (through + smooth[0] + smooth[1])
+    }
+
+    /// Choose a lobe with the first number, then sample it; nothing to sample gives weight and density 0.
+    fn draw(&self, w_in: Vec3, u: [f64; 3], rule: PeakRule) -> Draw {
+        let probability = self.straight_probability(w_in, rule);
+        if u[0] < probability {
+            let weight = self.0.through(w_in, rule) / probability;
+            return Draw { w_out: -w_in, weight, pdf: probability, straight: true };
+        }
+        let rest = 1.0 - probability;
+        let stretched = if rest > 0.0 { (u[0] - probability) / rest } else { u[0] };
+        match self.0.sample_smooth(w_in, [stretched, u[1], u[2]], rule) {
+            Some(sample) => Draw {
+                w_out: sample.w_out,
+                weight: sample.weight / rest,
+                pdf: sample.pdf * rest,
+                straight: false,
+            },
+            None => Draw { w_out: -w_in, weight: Rgb::ZERO, pdf: 0.0, straight: false },
+        }
+    }
+}
+
+fn pairs(w_in: &PyReadonlyArray2<'_, f64>, w_out: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<(Vec3, Vec3)>> {
+    let incident = directions(w_in, "w_in")?;
+    let outgoing = directions(w_out, "w_out")?;
+    same_length(incident.len(), outgoing.len(), "w_out")?;
+    Ok(incident.into_iter().zip(outgoing).collect())
+}
+
+fn same_length(expected: usize, found: usize, name: &str) -> PyResult<()> {
+    if expected == found {
+        Ok(())
+    } else {
+        Err(InputError::new_err(format!("{name}: expected {expected} rows, as in w_in, found {found}")))
+    }
+}

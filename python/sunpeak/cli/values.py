@@ -1,0 +1,51 @@
+"""Values of options that are not plain numbers; what is wrong with them is wrong usage (exit status 2)."""
+
+import math
+import re
+from datetime import datetime
+
+import typer
+
+from sunpeak.skies import Place
+
+
+def parse_size(text: str) -> tuple[int, int]:
+    """`800x600` or `800`, as width and height in pixels."""
+    match = re.fullmatch(r"(\d+)(?:[xX](\d+))?", text.strip())
+    if match is None:
+        raise typer.BadParameter(f"{text!r}; expected WIDTHxHEIGHT, as in 800x600")
+    width = int(match[1])
+    height = int(match[2]) if match[2] else width
+    if not (width and height):
+        raise typer.BadParameter(f"{text!r}; a picture needs at least one pixel each way")
+    return width, height
+
+
+def parse_numbers(text: str) -> list[float]:
+    """`0,10,20` as numbers."""
+    try:
+        numbers = [float(part) for part in text.split(",")]
+    except ValueError as error:
+        raise typer.BadParameter(f"{text!r}; expected numbers with commas between, as in 0,10,20") from error
+    if not all(math.isfinite(number) for number in numbers):
+        raise typer.BadParameter(f"{text!r}; expected finite numbers")
+    return numbers
+
+
+def parse_place(text: str) -> Place:
+    """`37.7,-122.2` or with the elevation in metres, as a place."""
+    numbers = parse_numbers(text)
+    if len(numbers) not in (2, 3) or not (abs(numbers[0]) <= 90 and abs(numbers[1]) <= 180):
+        raise typer.BadParameter(f"{text!r}; expected LATITUDE,LONGITUDE[,METRES], degrees north and east")
+    return Place(*numbers)
+
+
+def parse_time(text: str) -> datetime:
+    """`2024-06-21T14:30+02:00` as a time."""
+    try:
+        when = datetime.fromisoformat(text)
+    except ValueError as error:
+        raise typer.BadParameter(f"{text!r}; expected a time as in 2024-06-21T14:30+02:00") from error
+    if when.tzinfo is None:
+        raise typer.BadParameter(f"{text!r}; expected a time zone at its end, as in {text}+01:00")
+    return when
