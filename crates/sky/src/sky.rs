@@ -55,7 +55,8 @@ impl Sky {
     /// Irradiances become illuminances by the luminous efficacy model of Perez et al. 1990, and these radiances by
     /// 179 lm/W. It differs from `gendaylit` in this:
     /// - The sky gives exactly the diffuse illuminance (integral of [`SkyDistribution::brightness`], with the ground
-    ///   that it blends in at the horizon); `gendaylit` sums 145 patches, which is up to some 10 % off.
+    ///   that it blends in at the horizon); `gendaylit` sums 145 patches, and its sky
+    ///   comes out 0.1 to 3 % darker than what it was given (81 skies with a black ground).
     /// - The ground's radiance is reflectance / π times the global illuminance; `gendaylit` estimates it from the
     ///   zenith luminance.
     /// - The sun may stand above 87 degrees. A parameter b above 0, for which `gendaylit` gives a black sky, counts as 0.

@@ -6,6 +6,8 @@
 
 mod args;
 mod daylit_args;
+mod daylit_place;
+mod daylit_radiation;
 mod format;
 mod gendaylit;
 mod gensky;
