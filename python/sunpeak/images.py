@@ -3,6 +3,7 @@
 Both work on linear arrays, so that pictures that are to be compared can share one exposure or one scale.
 """
 
+import io
 from os import PathLike
 from typing import Any
 
@@ -23,11 +24,14 @@ MIDDLE_GRAY = 0.18
 WHITE_PERCENTILE = 99.5
 """Share of the pixels [%] that must not clip: the sun and its like may."""
 
+SCALE = "inferno"
+"""Colours of luminance: even steps to the eye, and to eyes that do not tell red from green."""
+
 Image = npt.NDArray[np.uint8]
 Luminance = npt.NDArray[np.floating[Any]]
 
 
-def luminance_cd_m2(pixels: npt.NDArray[np.floating[Any]]) -> npt.NDArray[np.float64]:
+def luminance_cd_m2(pixels: npt.ArrayLike) -> npt.NDArray[np.float64]:
     """Luminance [cd/m²] of radiances (..., 3) [W sr⁻¹ m⁻²]."""
     luminance: npt.NDArray[np.float64] = LUMINOUS_EFFICACY * (np.asarray(pixels, dtype=np.float64) @ LUMINANCE_WEIGHTS)
     return luminance
@@ -61,12 +65,38 @@ def encode_srgb(linear: npt.NDArray[np.floating[Any]]) -> Image:
     return image
 
 
+def false_colour(
+    luminance: Luminance, limits_cd_m2: tuple[float, float], seen: npt.NDArray[np.bool_] | None = None
+) -> Image:
+    """Image (h, w, 3) of luminance (h, w) [cd/m²] on a logarithmic scale; what is not `seen` is white."""
+    low, high = limits_cd_m2
+    share = np.log(np.clip(luminance, low, high) / low) / np.log(high / low)
+    image: Image = np.round(255.0 * colours(share)).astype(np.uint8)
+    if seen is not None:
+        image[~seen] = 255
+    return image
+
+
+def colours(share: npt.NDArray[np.floating[Any]]) -> npt.NDArray[np.float64]:
+    """Colours (..., 3) of the false-colour scale, 0 to 1 along it."""
+    from matplotlib import colormaps  # noqa: PLC0415  (half a second that `--help` need not spend)
+
+    return np.asarray(colormaps[SCALE](share), dtype=np.float64)[..., :3]
+
+
+def png_bytes(image: Image) -> bytes:
+    """PNG file of an image (h, w, 3)."""
+    from matplotlib import image as writer  # noqa: PLC0415
+
+    buffer = io.BytesIO()
+    writer.imsave(buffer, image, format="png")
+    return buffer.getvalue()
+
+
 def save_png(image: Image, path: str | PathLike[str]) -> None:
     """Write an image (h, w, 3) as PNG."""
-    from matplotlib import image as writer  # noqa: PLC0415  (half a second that `--help` need not spend)
-
     with whole_file(path) as temporary:
-        writer.imsave(temporary, image, format="png")
+        temporary.write_bytes(png_bytes(image))
 
 
 def save_false_colour(
@@ -91,7 +121,7 @@ def save_false_colour(
     axes = figure.add_subplot()
     clipped = np.clip(luminance, low, high)
     shown = clipped if seen is None else np.where(seen, clipped, np.nan)
-    drawn = axes.imshow(shown, norm=LogNorm(low, high), cmap="inferno", interpolation="nearest")
+    drawn = axes.imshow(shown, norm=LogNorm(low, high), cmap=SCALE, interpolation="nearest")
     axes.set_axis_off()
     if title:
         axes.set_title(title, fontsize=10)

@@ -1,0 +1,57 @@
+"""What the sun's luminance behind the demo's facade must be, from closed forms alone."""
+
+import math
+from dataclasses import dataclass
+
+from sunpeak.demo import fabric, room
+from sunpeak.images import luminance_cd_m2
+from sunpeak.skies import Sky
+
+GLASS_INDEX = 1.52
+"""Refractive index of `glass` in Radiance unless the material states another (reference manual, "Glass")."""
+
+
+@dataclass(frozen=True)
+class Expectation:
+    """The sun through glass and fabric."""
+
+    incidence_deg: float
+    """Between the sun and the facade's normal."""
+    fabric_transmittance: float
+    """Straight through the fabric [-]."""
+    glazing_transmittance: float
+    """Straight through both panes [-]."""
+    sun_cd_m2: float
+    """The sun's disc outside."""
+
+    @property
+    def luminance_cd_m2(self) -> float:
+        """Luminance of the disc behind glass and fabric."""
+        return self.fabric_transmittance * self.glazing_transmittance * self.sun_cd_m2
+
+
+def expectation(sky: Sky) -> Expectation:
+    """Work it out for the demo's facade, whose normal is the y axis."""
+    direction, radiance = sky.sun_direction, sky.sun_radiance
+    if direction is None or radiance is None:
+        raise ValueError("the demo's sky has no sun")
+    cosine = abs(direction[1])
+    return Expectation(
+        incidence_deg=math.degrees(math.acos(cosine)),
+        fabric_transmittance=fabric.through_transmittance(math.acos(cosine)),
+        glazing_transmittance=pane_transmittance(room.PANE_TRANSMISSIVITY, cosine) ** len(room.PANES_Y_M),
+        sun_cd_m2=float(luminance_cd_m2(radiance)),
+    )
+
+
+def pane_transmittance(transmissivity: float, cosine: float, index: float = GLASS_INDEX) -> float:
+    """Transmittance [-] of a clear pane, all reflections inside it included, for unpolarised light.
+
+    `transmissivity` is that of one crossing at normal incidence; the way through the pane grows with 1 / cos of the
+    refracted angle. Fresnel's equations; the two polarisations pass the pane apart (Born and Wolf, section 1.6).
+    """
+    refracted = math.sqrt(1.0 - (1.0 - cosine**2) / index**2)
+    crossing: float = transmissivity ** (1.0 / refracted)
+    across = ((cosine - index * refracted) / (cosine + index * refracted)) ** 2
+    along = ((index * cosine - refracted) / (index * cosine + refracted)) ** 2
+    return sum((1.0 - r) ** 2 * crossing / (1.0 - (r * crossing) ** 2) for r in (across, along)) / 2.0
