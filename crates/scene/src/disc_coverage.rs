@@ -93,13 +93,15 @@ impl Grid<'_> {
             .map(|(&index, &solid_angle)| {
                 let whole = self.solid_angle(index);
                 let is_inner = self.lies_in(index, disc);
-                *(if is_inner { &mut inner } else { &mut edge }) += if is_inner { whole } else { solid_angle };
+                *(if is_inner { &mut inner } else { &mut edge }) +=
+                    if is_inner { whole } else { solid_angle };
                 (index, whole, solid_angle, is_inner)
             })
             .collect();
         let in_view: f64 = covered.values().sum();
         let correction = if edge > 0.0 { ((in_view - inner) / edge).max(0.0) } else { 1.0 };
-        let share = |whole: f64, part: f64, is_inner: bool| if is_inner { 1.0 } else { part * correction / whole };
+        let share =
+            |whole: f64, part: f64, is_inner: bool| if is_inner { 1.0 } else { part * correction / whole };
         pixels
             .into_iter()
             .filter(|&(_, whole, ..)| whole > 0.0)
@@ -173,7 +175,8 @@ mod tests {
 
     #[test]
     fn shares_add_up_to_the_disc_for_every_size_and_place() {
-        for kind in [ViewKind::AngularFisheye, ViewKind::HemisphericalFisheye, ViewKind::PlanisphericFisheye] {
+        for kind in [ViewKind::AngularFisheye, ViewKind::HemisphericalFisheye, ViewKind::PlanisphericFisheye]
+        {
             let view = fisheye(kind);
             for size in [64, 500] {
                 for angle_deg in [0.01, 0.5, 0.533, 5.0, 40.0] {

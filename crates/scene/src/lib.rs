@@ -1,11 +1,31 @@
 //! The Radiance scene language, views and pictures. It knows files; it does not know how light moves.
+//!
+//! A scene file goes through three layers: [`raw`] reads words and counts, `command` does the `!commands` (in this
+//! process, never in a shell unless that is allowed), `interpret` looks names up and checks arguments.
+//!
+//! ```
+//! use sunpeak_scene::{LoadOptions, Scene};
+//! let text = "void plastic white 0 0 5 .8 .8 .8 0 0\n!genbox white box 2 3 1 | xform -t 0 0 .5";
+//! let scene = Scene::parse(text, "room.rad", &LoadOptions::default())?;
+//! assert_eq!(scene.surfaces.len(), 6);
+//! # Ok::<(), sunpeak_core::Error>(())
+//! ```
 
+mod command;
+mod disc_coverage;
+mod files;
+mod interpret;
+mod load;
 mod picture;
+pub mod raw;
 mod scene;
 mod view;
 
+pub use disc_coverage::disc_coverage;
+pub use files::LoadOptions;
+pub use load::load_primitives;
 pub use picture::{ExactSource, Picture};
 pub use scene::{
     BsdfMaterial, Material, Modifier, ModifierId, ModifierKind, Pattern, Scene, Shape, Surface, Ward,
 };
-pub use view::{View, ViewKind, ViewRay};
+pub use view::{Camera, View, ViewKind, ViewRay};

@@ -15,6 +15,8 @@ pub struct Scene {
     pub modifiers: Vec<Modifier>,
     /// Surfaces and sources, in file order.
     pub surfaces: Vec<Surface>,
+    /// What is odd in the files but no error: left-out degenerate surfaces, materials that nothing can use, …
+    pub warnings: Vec<String>,
 }
 
 /// A named material or pattern.
@@ -82,16 +84,16 @@ pub enum Material {
     Mirror {
         /// Reflectance.
         reflectance: Rgb,
-        /// Material for view rays, if named (`Some(None)` is `void`: as a mirror, makes no virtual sources… see manual).
+        /// Material for all other rays, if named; `Some(None)` is `void`: such rays pass.
         alternate: Option<Option<ModifierId>>,
     },
     /// An emitter [W sr⁻¹ m⁻²].
     Light(Rgb),
-    /// An emitter that looks like another material when seen directly (`None`: invisible, `void`).
+    /// An emitter that looks like another material, or is invisible, when seen directly.
     Illum {
         /// Radiance as a light.
         radiance: Rgb,
-        /// Material that view rays see; `None` for a plain light.
+        /// Material that view rays see; `Some(None)` is `void`, and so is a file that names none: such rays pass.
         alternate: Option<Option<ModifierId>>,
     },
     /// An emitter that lights only within `max_radius` directly (0: by reflection and view only; negative: never
@@ -206,4 +208,3 @@ pub enum Shape {
         angle_deg: f64,
     },
 }
-

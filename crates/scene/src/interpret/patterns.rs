@@ -1,0 +1,83 @@
+//! Patterns: the skies of gensky and gendaylit.
+
+use super::args::{title, triple, unsupported};
+use crate::{Pattern, command::trailing_transform, raw::Primitive};
+use sunpeak_core::{Transform, Vec3};
+use sunpeak_sky::{CieSky, SkyDistribution};
+
+/// How far an axis may turn by rounding.
+const AXIS_TOLERANCE: f64 = 1e-9;
+
+/// `brightfunc`: string arguments function, file [transform].
+pub fn bright_function(primitive: &Primitive) -> Result<Pattern, String> {
+    let [function, file, rest @ ..] = primitive.strings.as_slice() else {
+        let found = primitive.strings.len();
+        return Err(format!(
+            "wrong number of arguments of {}: expected at least 2 string arguments (function file), found {found}",
+            title(primitive)
+        ));
+    };
+    let file = file.rsplit('/').next().unwrap_or(file);
+    let sky = match (function.as_str(), file.strip_suffix(".cal").unwrap_or(file)) {
+        ("skybr", "skybright") => cie(primitive)?,
+        ("skybright", "perezlum") => perez(primitive)?,
+        _ => {
+            let known = "only skybr of skybright.cal and skybright of perezlum.cal are";
+            return Err(format!("{} ({known}), found {function} of {file}", unsupported(primitive)));
+        }
+    };
+    let transform =
+        trailing_transform(rest).map_err(|m| format!("{}: bad transform: {m}", title(primitive)))?;
+    turned(sky, &transform)
+        .map(Pattern::Sky)
+        .ok_or_else(|| format!("{}: a sky whose zenith is tilted is not supported yet", title(primitive)))
+}
+
+fn cie(primitive: &Primitive) -> Result<SkyDistribution, String> {
+    let reals = at_least(primitive, 7)?;
+    // The function file selects by A1 rounded.
+    let kind = match (reals[0] + 0.5).floor() as i64 {
+        1 => CieSky::Clear,
+        2 => CieSky::Overcast,
+        3 => CieSky::Uniform,
+        4 => CieSky::Intermediate,
+        _ => return Err(format!("{}: A1 is {}, expected 1, 2, 3 or 4", title(primitive), reals[0])),
+    };
+    let (zenith, ground, normalization) = (reals[1], reals[2], reals[3]);
+    Ok(SkyDistribution::Cie { kind, zenith, ground, normalization, sun: triple(reals, 4) })
+}
+
+fn perez(primitive: &Primitive) -> Result<SkyDistribution, String> {
+    let reals = at_least(primitive, 10)?;
+    let coefficients = [reals[2], reals[3], reals[4], reals[5], reals[6]];
+    Ok(SkyDistribution::Perez {
+        normalization: reals[0],
+        ground: reals[1],
+        coefficients,
+        sun: triple(reals, 7),
+    })
+}
+
+fn at_least(primitive: &Primitive, count: usize) -> Result<&[f64], String> {
+    if primitive.reals.len() >= count {
+        return Ok(&primitive.reals);
+    }
+    let found = primitive.reals.len();
+    Err(format!(
+        "wrong number of arguments of {}: expected {count} real arguments, found {found}",
+        title(primitive)
+    ))
+}
+
+/// The sky after a transform that leaves the zenith where it is; `None` for others. A sky is at infinity: moving
+/// and scaling do not change it.
+fn turned(mut sky: SkyDistribution, transform: &Transform) -> Option<SkyDistribution> {
+    let turn = |v: Vec3| transform.vector(v) / transform.scale();
+    if (turn(Vec3::Z) - Vec3::Z).length() > AXIS_TOLERANCE {
+        return None;
+    }
+    match &mut sky {
+        SkyDistribution::Cie { sun, .. } | SkyDistribution::Perez { sun, .. } => *sun = turn(*sun),
+    }
+    Some(sky)
+}
