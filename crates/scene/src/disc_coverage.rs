@@ -3,7 +3,7 @@
 //! A renderer adds `radiance * visible fraction * share` to a pixel, a glare program takes exactly that out again: both
 //! ask here, so that nothing is left over.
 
-use crate::{View, ViewKind};
+use crate::{Camera, View, ViewKind};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use sunpeak_core::{Frame, Vec3};
@@ -34,7 +34,8 @@ pub fn disc_coverage(
     if width == 0 || height == 0 || view.kind == ViewKind::Parallel || !is_disc {
         return Vec::new();
     }
-    let grid = Grid { view, width, height };
+    let Some(camera) = Camera::new(view) else { return Vec::new() };
+    let grid = Grid { camera, width, height };
     let disc = Disc { frame: Frame::from_normal(direction), solid_angle_sr };
     let covered = grid.covered_solid_angles(&disc);
     grid.shares(&disc, &covered)
@@ -64,13 +65,13 @@ impl Disc {
 }
 
 /// The pixels of a view.
-struct Grid<'a> {
-    view: &'a View,
+struct Grid {
+    camera: Camera,
     width: usize,
     height: usize,
 }
 
-impl Grid<'_> {
+impl Grid {
     /// Solid angle of the disc in each pixel that it touches.
     fn covered_solid_angles(&self, disc: &Disc) -> BTreeMap<usize, f64> {
         let pixel = self.smallest_pixel_near(disc.frame.z).unwrap_or(disc.solid_angle_sr);
@@ -111,11 +112,11 @@ impl Grid<'_> {
 
     fn solid_angle(&self, index: usize) -> f64 {
         let (column, row) = (index % self.width, index / self.width);
-        self.view.pixel_solid_angle(column, row, self.width, self.height)
+        self.camera.pixel_solid_angle(column, row, self.width, self.height)
     }
 
     fn pixel_of(&self, direction: Vec3) -> Option<usize> {
-        let [x, y] = self.view.project(direction)?;
+        let [x, y] = self.camera.project(direction)?;
         let in_picture = (0.0..1.0).contains(&x) && y > 0.0 && y <= 1.0;
         in_picture.then(|| {
             let column = ((x * self.width as f64) as usize).min(self.width - 1);
@@ -130,7 +131,7 @@ impl Grid<'_> {
         [(0, 0), (0, 1), (1, 0), (1, 1)].iter().all(|&(right, down)| {
             let x = (column + right) as f64 / self.width as f64;
             let y = 1.0 - (row + down) as f64 / self.height as f64;
-            self.view.ray(x, y).is_some_and(|ray| disc.contains(ray.direction))
+            self.camera.ray(x, y).is_some_and(|ray| disc.contains(ray.direction))
         })
     }
 

@@ -1,7 +1,17 @@
 //! Pictures: linear radiance with everything that a glare program needs to know about it.
+//!
+//! The codec is our own: those that exist drop header lines (`VIEW=`, several `EXPOSURE=`), know one orientation of eight
+//! and not XYZE, and decode to other values than Radiance does (by half a step).
+
+mod header;
+mod orientation;
+mod read;
+mod rgbe;
+mod scanline;
+mod write;
 
 use crate::View;
-use sunpeak_core::{Rgb, Vec3};
+use sunpeak_core::{Rgb, Vec3, luminance_cd_m2};
 
 /// Linear radiance [W sr⁻¹ m⁻²] in three channels, top row first.
 #[derive(Clone, Debug)]
@@ -14,7 +24,8 @@ pub struct Picture {
     pub pixels: Vec<[f32; 3]>,
     /// The view; `None` if the header has none (or a picture was cropped or rotated since).
     pub view: Option<View>,
-    /// Header lines (without the first `#?RADIANCE`, `FORMAT=`, `VIEW=`, `EXPOSURE=` and `SUNPEAK_SOURCE=`), as read.
+    /// Header lines (without the first `#?RADIANCE`, `FORMAT=`, `VIEW=`, `EXPOSURE=`, `COLORCORR=` and `SUNPEAK_SOURCE=`), as
+    /// read.
     pub header: Vec<String>,
     /// Suns seen through peaks, through glass, in mirrors or directly, exactly.
     pub exact_sources: Vec<ExactSource>,
@@ -33,3 +44,19 @@ pub struct ExactSource {
     /// Share of the disc that is not hidden.
     pub visible_fraction: f64,
 }
+
+impl Picture {
+    /// A black picture.
+    pub fn new(width: usize, height: usize) -> Self {
+        let pixels = vec![[0.0; 3]; width * height];
+        Self { width, height, pixels, view: None, header: Vec::new(), exact_sources: Vec::new() }
+    }
+
+    /// Luminance of each pixel [cd/m²], top row first.
+    pub fn luminance(&self) -> Vec<f64> {
+        self.pixels.iter().map(|&[r, g, b]| luminance_cd_m2(Rgb::new(r.into(), g.into(), b.into()))).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests;
