@@ -1,2 +1,27 @@
 //! Glare metrics from pictures: position index, source detection, DGP and its siblings. How the picture was made is
 //! not known here.
+//!
+//! [`evaluate`] looks at a [`sunpeak_scene::Picture`] in five steps, one file each:
+//! `field` (luminance, solid angle and direction of each pixel), `exact` (suns that the picture knows exactly leave
+//! their pixels), `detect` (pixels that glare), `cluster` (which of them are one source), `dgp` (the equations).
+//!
+//! All of it is written from publications; the comments name them. Where they leave a choice, it is an option in
+//! [`GlareOptions`] with evalglare's value as its default.
+
+mod class;
+mod cluster;
+mod detect;
+mod dgp;
+mod evaluate;
+mod exact;
+mod field;
+mod options;
+mod position_index;
+mod report;
+
+pub use class::GlareClass;
+pub use dgp::{daylight_glare_probability, low_light_factor};
+pub use evaluate::evaluate;
+pub use options::{GlareOptions, TaskZone, Threshold};
+pub use position_index::{BelowSight, position_index};
+pub use report::{GlareReport, Source};
