@@ -13,6 +13,22 @@ pub fn square_to_disk([u, v]: [f64; 2]) -> [f64; 2] {
     [r * phi.cos(), r * phi.sin()]
 }
 
+/// The inverse of [`square_to_disk`]: unit disk to unit square.
+pub fn disk_to_square([x, y]: [f64; 2]) -> [f64; 2] {
+    let r = x.hypot(y);
+    let (a, b) = if x.abs() > y.abs() {
+        // Signed radius, so that the angle stays within 45 degrees of the axis.
+        let a = r.copysign(x);
+        (a, a * (y / x).atan() * (4.0 / PI))
+    } else if y == 0.0 {
+        (0.0, 0.0)
+    } else {
+        let b = r.copysign(y);
+        (b * (x / y).atan() * (4.0 / PI), b)
+    };
+    [(0.5 + 0.5 * a).clamp(0.0, 1.0), (0.5 + 0.5 * b).clamp(0.0, 1.0)]
+}
+
 /// Cosine-distributed direction around +z; density cos(theta)/pi.
 pub fn cosine_hemisphere(u: [f64; 2]) -> Vec3 {
     let [x, y] = square_to_disk(u);
@@ -39,6 +55,17 @@ pub fn uniform_sphere([u, v]: [f64; 2]) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn disk_and_square_undo_each_other() {
+        for i in 0..41 {
+            for j in 0..41 {
+                let u = [i as f64 / 40.0, j as f64 / 40.0];
+                let back = disk_to_square(square_to_disk(u));
+                assert!((u[0] - back[0]).abs() < 1e-12 && (u[1] - back[1]).abs() < 1e-12, "{u:?} {back:?}");
+            }
+        }
+    }
 
     #[test]
     fn cone_samples_stay_in_the_cone_and_fill_it() {

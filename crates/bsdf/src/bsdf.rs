@@ -1,0 +1,335 @@
+//! One product: front and back, reflection and transmission, with the Radiance library's meaning of sides.
+
+use crate::{
+    distribution::Distribution,
+    peak::{PeakRule, reference},
+    proposal::{Oriented, Proposal},
+    table::Table,
+    xml::{self, Block, Document},
+};
+use glam::DVec2;
+use std::{
+    f64::consts::PI,
+    path::Path,
+    sync::{Arc, OnceLock},
+};
+use sunpeak_core::{Error, Location, Result, Rgb, Vec3, luminance};
+
+/// Components that scatter less than this [-] count as missing (as in Radiance's library).
+const INSIGNIFICANT: f64 = 0.001;
+
+/// Which half of the scattering.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Mode {
+    /// Both directions on one side.
+    Reflection,
+    /// On opposite sides.
+    Transmission,
+}
+
+/// A sampled direction of the smooth lobe.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Unit vector.
+    pub w_out: Vec3,
+    /// f |cos| / pdf.
+    pub weight: Rgb,
+    /// Density [1/sr].
+    pub pdf: f64,
+}
+
+/// One product: front and back, reflection and transmission.
+#[derive(Debug)]
+pub struct Bsdf {
+    /// Name of the material in the file.
+    pub name: String,
+    /// Manufacturer in the file.
+    pub manufacturer: String,
+    /// `IncidentDataStructure` of the file: `Columns`, `TensorTree3` …
+    pub structure: String,
+    /// What was tolerated in the file.
+    pub warnings: Vec<String>,
+    /// Transmission for the traced ray at the front, at the back; the same for reflection.
+    transmission: [Option<Lobe>; 2],
+    reflection: [Option<Lobe>; 2],
+}
+
+/// A side and mode, with its proposals made on first use.
+#[derive(Debug)]
+struct Lobe {
+    oriented: Oriented,
+    whole: OnceLock<Proposal>,
+    residual: OnceLock<Proposal>,
+}
+
+impl Lobe {
+    fn new(distribution: &Arc<Distribution>, reversed: bool) -> Self {
+        let oriented = Oriented { distribution: distribution.clone(), reversed };
+        Self { oriented, whole: OnceLock::new(), residual: OnceLock::new() }
+    }
+
+    fn proposal(&self, rule: PeakRule) -> &Proposal {
+        // A table without a peak is its own residual.
+        if rule == PeakRule::Split && self.oriented.distribution.split().has_peak() {
+            self.residual.get_or_init(|| Proposal::new(&self.oriented, true))
+        } else {
+            self.whole.get_or_init(|| Proposal::new(&self.oriented, false))
+        }
+    }
+}
+
+/// Tables of one product by the names of the file, before they get sides.
+#[derive(Debug, Default)]
+pub struct Sides {
+    /// XML `Transmission Front`.
+    pub transmission_front: Option<Arc<Distribution>>,
+    /// XML `Transmission Back`.
+    pub transmission_back: Option<Arc<Distribution>>,
+    /// XML `Reflection Front`.
+    pub reflection_front: Option<Arc<Distribution>>,
+    /// XML `Reflection Back`.
+    pub reflection_back: Option<Arc<Distribution>>,
+}
+
+impl Bsdf {
+    /// Read an LBNL XML file and split it.
+    pub fn load(path: &Path) -> Result<Self> {
+        let text = std::fs::read(path).map_err(|e| Error::io(path, e))?;
+        Self::parse(&path.to_string_lossy(), &text)
+    }
+
+    /// Read the text of an LBNL XML file and split it; `file` names it in messages.
+    pub fn parse(file: &str, text: &[u8]) -> Result<Self> {
+        let mut document = xml::parse(file, text)?;
+        let blocks = std::mem::take(&mut document.blocks);
+        let sides = sides(file, &blocks)?;
+        Ok(Self::from_sides(document, sides))
+    }
+
+    /// From distributions named as in a file.
+    ///
+    /// The file's `Front` is where WINDOW has the outside; a BSDF's frame has its front towards the viewer. So light that
+    /// meets the front of the frame is what the file calls `Back`, as in Radiance's library.
+    pub fn from_sides(document: Document, sides: Sides) -> Self {
+        let significant =
+            |d: Option<Arc<Distribution>>| d.filter(|d| largest_hemispherical(d) > INSIGNIFICANT);
+        let front = significant(sides.transmission_back);
+        let back = significant(sides.transmission_front);
+        let lobe = |own: &Option<Arc<Distribution>>, other: &Option<Arc<Distribution>>| match (own, other) {
+            (Some(own), _) => Some(Lobe::new(own, false)),
+            (None, Some(other)) => Some(Lobe::new(other, true)),
+            (None, None) => None,
+        };
+        let transmission = [lobe(&front, &back), lobe(&back, &front)];
+        // In reflection the library has the traced ray as a tree's exiting direction, as a matrix's incident one.
+        let reflection = [sides.reflection_back, sides.reflection_front].map(|d| {
+            let d = significant(d)?;
+            Some(Lobe::new(&d, matches!(d.luminous(), Table::Tree(_))))
+        });
+        Self {
+            name: document.name,
+            manufacturer: document.manufacturer,
+            structure: document.structure,
+            warnings: document.warnings,
+            transmission,
+            reflection,
+        }
+    }
+
+    fn lobe(&self, w_in: Vec3, mode: Mode) -> Option<&Lobe> {
+        let side = usize::from(w_in.z <= 0.0);
+        match mode {
+            Mode::Transmission => self.transmission[side].as_ref(),
+            Mode::Reflection => self.reflection[side].as_ref(),
+        }
+    }
+
+    /// The table that light meets which is traced from `w_in`'s side, and whether it is traced against the table.
+    pub fn distribution(&self, w_in: Vec3, mode: Mode) -> Option<&Oriented> {
+        self.lobe(w_in, mode).map(|l| &l.oriented)
+    }
+
+    fn value(&self, w_in: Vec3, w_out: Vec3, residual: bool) -> Rgb {
+        match self.distribution(w_in, mode(w_in, w_out)) {
+            Some(oriented) => oriented.value(incident_point(w_in), exiting_point(w_out), residual),
+            None => Rgb::ZERO,
+        }
+    }
+
+    /// The table as it is in the file [1/sr].
+    pub fn evaluate(&self, w_in: Vec3, w_out: Vec3) -> Rgb {
+        self.value(w_in, w_out, false)
+    }
+
+    /// What stays after `rule` took its peak [1/sr]: the residual for `Split`, the table itself for the others.
+    pub fn evaluate_smooth(&self, w_in: Vec3, w_out: Vec3, rule: PeakRule) -> Rgb {
+        self.value(w_in, w_out, rule == PeakRule::Split)
+    }
+
+    /// `Radiance` and `Paper`: BSDF [1/sr] towards a light source of `solid_angle` [sr] around `w_out`, with the
+    /// exclusion zone around the straight direction. Other rules: [`Self::evaluate_smooth`].
+    pub fn evaluate_to_source(&self, w_in: Vec3, w_out: Vec3, solid_angle: f64, rule: PeakRule) -> Rgb {
+        match rule {
+            PeakRule::Radiance | PeakRule::Paper => {
+                reference::evaluate_to_source(self, w_in, w_out, solid_angle, rule)
+            }
+            PeakRule::Off | PeakRule::Split => self.evaluate_smooth(w_in, w_out, rule),
+        }
+    }
+
+    /// `Radiance` and `Paper`: is `w_out` so close to the straight direction that a view ray drops the sample?
+    pub fn is_muted_for_view(&self, w_in: Vec3, w_out: Vec3, rule: PeakRule) -> bool {
+        match rule {
+            PeakRule::Radiance | PeakRule::Paper => reference::is_muted_for_view(self, w_in, w_out, rule),
+            PeakRule::Off | PeakRule::Split => false,
+        }
+    }
+
+    /// Through transmittance [-] along `w_out = -w_in`; zero for `Off`.
+    pub fn through(&self, w_in: Vec3, rule: PeakRule) -> Rgb {
+        match rule {
+            PeakRule::Off => Rgb::ZERO,
+            PeakRule::Split => self
+                .distribution(w_in, Mode::Transmission)
+                .map_or(Rgb::ZERO, |o| o.through(incident_point(w_in))),
+            PeakRule::Radiance | PeakRule::Paper => {
+                reference::peak(self, w_in, rule).map_or(Rgb::ZERO, |p| p.through)
+            }
+        }
+    }
+
+    /// Hemispherical reflectance or transmittance [-] of what [`Self::evaluate_smooth`] gives.
+    pub fn hemispherical_smooth(&self, w_in: Vec3, mode: Mode, rule: PeakRule) -> Rgb {
+        self.lobe(w_in, mode).map_or(Rgb::ZERO, |l| l.proposal(rule).hemispherical(incident_point(w_in)))
+    }
+
+    /// Sample the smooth part, reflection and transmission together, in proportion to luminous f |cos|; `None` if there is
+    /// nothing to sample. `u` is uniform in the unit cube.
+    pub fn sample_smooth(&self, w_in: Vec3, u: [f64; 3], rule: PeakRule) -> Option<Sample> {
+        let share = self.reflected_share(w_in, rule)?;
+        let reflect = u[0] < share;
+        let (mode, first) = if reflect {
+            (Mode::Reflection, u[0] / share)
+        } else {
+            (Mode::Transmission, (u[0] - share) / (1.0 - share))
+        };
+        let lobe = self.lobe(w_in, mode)?;
+        let p_in = incident_point(w_in);
+        let residual = rule == PeakRule::Split;
+        let value = |p_out| luminance(lobe.oriented.value(p_in, p_out, residual));
+        let sampled = lobe.proposal(rule).sample(p_in, [first, u[1], u[2]], value)?;
+        let height = (1.0 - sampled.p_out.length_squared()).max(0.0).sqrt();
+        let above = (w_in.z > 0.0) == reflect;
+        let w_out = sampled.p_out.extend(if above { height } else { -height });
+        let chosen = if reflect { share } else { 1.0 - share };
+        let pdf = sampled.density * chosen * height;
+        if pdf <= 0.0 {
+            return None;
+        }
+        let weight = lobe.oriented.value(p_in, sampled.p_out, residual) / (sampled.density * chosen);
+        Some(Sample { w_out, weight, pdf })
+    }
+
+    /// Density [1/sr] of [`Self::sample_smooth`].
+    pub fn pdf_smooth(&self, w_in: Vec3, w_out: Vec3, rule: PeakRule) -> f64 {
+        let mode = mode(w_in, w_out);
+        let (Some(share), Some(lobe)) = (self.reflected_share(w_in, rule), self.lobe(w_in, mode)) else {
+            return 0.0;
+        };
+        let (p_in, p_out) = (incident_point(w_in), exiting_point(w_out));
+        let chosen = if mode == Mode::Reflection { share } else { 1.0 - share };
+        let value = luminance(lobe.oriented.value(p_in, p_out, rule == PeakRule::Split));
+        chosen * lobe.proposal(rule).density(p_in, p_out, value) * w_out.z.abs()
+    }
+
+    /// Probability that a sample is a reflection; `None` if nothing is scattered.
+    fn reflected_share(&self, w_in: Vec3, rule: PeakRule) -> Option<f64> {
+        let r = luminance(self.hemispherical_smooth(w_in, Mode::Reflection, rule));
+        let t = luminance(self.hemispherical_smooth(w_in, Mode::Transmission, rule));
+        (r + t > 0.0).then(|| r / (r + t))
+    }
+}
+
+fn mode(w_in: Vec3, w_out: Vec3) -> Mode {
+    if (w_in.z > 0.0) == (w_out.z > 0.0) { Mode::Reflection } else { Mode::Transmission }
+}
+
+/// Minus (x, y) of the traced ray's side.
+fn incident_point(w_in: Vec3) -> DVec2 {
+    -w_in.truncate()
+}
+
+fn exiting_point(w_out: Vec3) -> DVec2 {
+    w_out.truncate()
+}
+
+fn largest_hemispherical(d: &Distribution) -> f64 {
+    let (table, columns) = (d.luminous(), d.columns());
+    let of_column = |column| -> f64 {
+        let cells = table.cells(columns, column);
+        cells.iter().map(|c| f64::from(table.values()[c.index]) * c.projected_solid_angle).sum()
+    };
+    (0..columns.len()).map(of_column).fold(0.0, f64::max)
+}
+
+/// Give the blocks of a file their sides. A block that comes again replaces the one before, as in Radiance's library.
+fn sides(file: &str, blocks: &[Block]) -> Result<Sides> {
+    let block = |band: &str, direction: &str| {
+        blocks
+            .iter()
+            .rev()
+            .find(|b| b.band.eq_ignore_ascii_case(band) && b.direction.eq_ignore_ascii_case(direction))
+    };
+    let distribution = |direction: &str, split: bool| -> Result<Option<Arc<Distribution>>> {
+        let Some(luminous) = block("Visible", direction) else { return Ok(None) };
+        let whole_file = Location::new(file, 0, 0);
+        let color = if let (Some(x), Some(z)) = (block("CIE-X", direction), block("CIE-Z", direction)) {
+            let fits = |b: &Block| b.table.values().len() == luminous.table.values().len();
+            if !(fits(x) && fits(z)) {
+                let message = format!("{direction}: CIE-X and CIE-Z are not on the basis of Visible");
+                return Err(Error::input(whole_file, message));
+            }
+            Some([x.table.values().to_vec(), z.table.values().to_vec()])
+        } else if let (Some(u), Some(v)) = (block("CIE-u", direction), block("CIE-v", direction)) {
+            chromaticity(&luminous.table, &u.table, &v.table)
+        } else {
+            None
+        };
+        let table = luminous.table.clone();
+        let made =
+            if split { Distribution::with_split(table, color) } else { Distribution::new(table, color) };
+        Ok(Some(Arc::new(made)))
+    };
+    let sides = Sides {
+        transmission_front: distribution("Transmission Front", true)?,
+        transmission_back: distribution("Transmission Back", true)?,
+        reflection_front: distribution("Reflection Front", false)?,
+        reflection_back: distribution("Reflection Back", false)?,
+    };
+    let none = sides.transmission_front.is_none()
+        && sides.transmission_back.is_none()
+        && sides.reflection_front.is_none()
+        && sides.reflection_back.is_none();
+    if none {
+        let message = "no Transmission or Reflection in the Visible band (WavelengthDataDirection names 'Transmission Front' …)";
+        return Err(Error::input(Location::new(file, 0, 0), message));
+    }
+    Ok(sides)
+}
+
+/// CIE X and Z from Y and the trees of u' and v' (CIE 15: x = 9u'/(6u' - 16v' + 12), y = 4v'/(same)).
+fn chromaticity(luminous: &Table, u: &Table, v: &Table) -> Option<[Vec<f32>; 2]> {
+    let (Table::Tree(y), Table::Tree(u), Table::Tree(v)) = (luminous, u, v) else { return None };
+    let from = |ratio: fn(f64, f64) -> f64| {
+        let mapped = y.map_leaves(|leaf, value| {
+            let middle = leaf.corner.map(|c| c + 0.5 * leaf.size);
+            let (u, v) = (f64::from(u.value(middle)), f64::from(v.value(middle)));
+            if v > 0.0 { (f64::from(value) * ratio(u, v).max(0.0)) as f32 } else { value }
+        });
+        mapped.values().to_vec()
+    };
+    Some([from(|u, v| 9.0 * u / (4.0 * v)), from(|u, v| (12.0 - 3.0 * u - 20.0 * v) / (4.0 * v))])
+}
+
+/// Largest hemispherical value of an ideal diffuser's BTDF times pi.
+pub(crate) const LAMBERTIAN: f64 = 1.0 / PI;

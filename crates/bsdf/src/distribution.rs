@@ -1,0 +1,86 @@
+//! One side and mode of a BSDF: a luminous table, colour beside it, and the peak that was split off.
+
+use crate::{
+    peak::Split,
+    table::{Columns, Table},
+};
+use glam::{DVec2, DVec3};
+use sunpeak_core::{Rgb, gray, xyz_to_rgb};
+
+/// A table with colour and, for transmission, its split.
+#[derive(Debug)]
+pub struct Distribution {
+    luminous: Table,
+    /// CIE X and Z on the same cells.
+    color: Option<[Vec<f32>; 2]>,
+    columns: Columns,
+    split: Split,
+}
+
+impl Distribution {
+    /// Without a peak (reflection).
+    pub fn new(luminous: Table, color: Option<[Vec<f32>; 2]>) -> Self {
+        let columns = luminous.columns();
+        Self { luminous, color, columns, split: Split::none() }
+    }
+
+    /// With its through peak split off (transmission).
+    pub fn with_split(luminous: Table, color: Option<[Vec<f32>; 2]>) -> Self {
+        let mut distribution = Self::new(luminous, color);
+        distribution.split = Split::of(&distribution);
+        distribution
+    }
+
+    /// Luminous values.
+    pub fn luminous(&self) -> &Table {
+        &self.luminous
+    }
+
+    /// Values of CIE X and Z, in the cells of the luminous table.
+    pub fn color(&self) -> Option<&[Vec<f32>; 2]> {
+        self.color.as_ref()
+    }
+
+    /// The incident division.
+    pub fn columns(&self) -> &Columns {
+        &self.columns
+    }
+
+    /// The split.
+    pub fn split(&self) -> &Split {
+        &self.split
+    }
+
+    /// The value as it is in the file [1/sr].
+    pub fn value(&self, p_in: DVec2, p_out: DVec2) -> Rgb {
+        self.at_index(self.luminous.index(p_in, p_out))
+    }
+
+    /// The value of a cell as it is in the file [1/sr].
+    pub fn at_index(&self, index: usize) -> Rgb {
+        let y = f64::from(self.luminous.values()[index]);
+        match &self.color {
+            None => gray(y),
+            Some([x, z]) => to_rgb(DVec3::new(f64::from(x[index]), y, f64::from(z[index]))),
+        }
+    }
+
+    /// The value less the split peak [1/sr].
+    pub fn residual(&self, p_in: DVec2, p_out: DVec2) -> Rgb {
+        let index = self.luminous.index(p_in, p_out);
+        self.split.surround(self.columns.index(p_in), index).unwrap_or_else(|| self.at_index(index))
+    }
+
+    /// Luminous residual of a cell of a column [1/sr].
+    pub fn residual_at(&self, column: usize, index: usize) -> f64 {
+        match self.split.surround(column, index) {
+            Some(rgb) => sunpeak_core::luminance(rgb),
+            None => f64::from(self.luminous.values()[index]),
+        }
+    }
+}
+
+/// CIE XYZ to Radiance's channels; what lies outside their gamut is brought to its edge.
+pub fn to_rgb(xyz: DVec3) -> Rgb {
+    xyz_to_rgb(xyz).max(Rgb::ZERO)
+}

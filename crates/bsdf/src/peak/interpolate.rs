@@ -1,0 +1,184 @@
+//! Through transmittance between the columns of a table.
+//!
+//! A column's value is a mean over its incident cell. Between the columns it is interpolated linearly: in sin(theta) for isotropic
+//! trees, on the square for anisotropic ones, in sin²(theta) and azimuth for rings of patches. In each cell the interpolant
+//! is multiplied by the column's value over the interpolant's mean, so that the flux of each cell is exact; where a
+//! column has no peak it is zero.
+
+use crate::{basis::AngleBasis, table::Columns};
+use glam::DVec2;
+use std::f64::consts::PI;
+use sunpeak_core::{Rgb, warp::disk_to_square};
+
+/// Values of all columns, and the factors that keep their means.
+#[derive(Debug)]
+pub struct ThroughMap {
+    values: Vec<Rgb>,
+    factors: Vec<Rgb>,
+}
+
+impl ThroughMap {
+    /// Nothing goes through.
+    pub fn none() -> Self {
+        Self { values: Vec::new(), factors: Vec::new() }
+    }
+
+    /// From the mean of each column.
+    pub fn new(columns: &Columns, values: Vec<Rgb>) -> Self {
+        if values.iter().all(|v| *v == Rgb::ZERO) {
+            return Self::none();
+        }
+        let means = (0..values.len()).map(|c| mean(columns, &values, c));
+        let factors = values
+            .iter()
+            .zip(means)
+            .map(|(v, m)| {
+                Rgb::select(m.cmpgt(Rgb::ZERO), *v / m.max(Rgb::splat(f64::MIN_POSITIVE)), Rgb::ZERO)
+            })
+            .collect();
+        Self { values, factors }
+    }
+
+    /// The value at a point of incidence.
+    pub fn at(&self, columns: &Columns, p: DVec2) -> Rgb {
+        if self.values.is_empty() {
+            return Rgb::ZERO;
+        }
+        let factor = self.factors[columns.index(p)];
+        if factor == Rgb::ZERO { Rgb::ZERO } else { factor * interpolant(columns, &self.values, p) }
+    }
+}
+
+fn interpolant(columns: &Columns, values: &[Rgb], p: DVec2) -> Rgb {
+    match columns {
+        Columns::Radial { side } => {
+            // Columns run from grazing (0) to normal; the value is even in sin(theta).
+            let last = side / 2 - 1;
+            let (i, t) = between((1.0 - p.length()) * 0.5 * *side as f64, last);
+            values[i].lerp(values[(i + 1).min(last)], t)
+        }
+        Columns::Square { side } => {
+            let [x, y] = disk_to_square(p.into());
+            let last = side - 1;
+            let ((i, s), (j, t)) = (between(x * *side as f64, last), between(y * *side as f64, last));
+            let (i1, j1) = ((i + 1).min(last), (j + 1).min(last));
+            let row = |i: usize| values[i * side + j].lerp(values[i * side + j1], t);
+            row(i).lerp(row(i1), s)
+        }
+        Columns::Patches(basis) => on_rings(basis, values, p.length_squared(), p.y.atan2(p.x)),
+    }
+}
+
+/// Cell centres around a coordinate in cells: the lower one and the share of the upper one.
+fn between(at: f64, last: usize) -> (usize, f64) {
+    let at = (at - 0.5).clamp(0.0, last as f64);
+    let i = at as usize;
+    (i, at - i as f64)
+}
+
+fn on_rings(basis: &AngleBasis, values: &[Rgb], sin2: f64, phi: f64) -> Rgb {
+    let rings = basis.rings();
+    let upper = rings.partition_point(|r| r.middle_sin2() <= sin2);
+    let ring = |n: usize| {
+        let ring = &rings[n];
+        let at = (phi / (2.0 * PI)).rem_euclid(1.0) * ring.phi_count as f64;
+        let i = at as usize;
+        let patch = |k: usize| values[ring.first() + k % ring.phi_count];
+        patch(i).lerp(patch(i + 1), at - i as f64)
+    };
+    if upper == 0 {
+        return ring(0);
+    }
+    if upper == rings.len() {
+        return ring(upper - 1);
+    }
+    let (a, b) = (rings[upper - 1].middle_sin2(), rings[upper].middle_sin2());
+    ring(upper - 1).lerp(ring(upper), (sin2 - a) / (b - a))
+}
+
+/// Mean of the interpolant over a column: exact, as each piece between centres and borders is linear in each coordinate.
+fn mean(columns: &Columns, values: &[Rgb], column: usize) -> Rgb {
+    match columns {
+        Columns::Radial { .. } => [0.25, 0.75]
+            .into_iter()
+            .map(|u| 0.5 * interpolant(columns, values, columns.point(column, [u, 0.5])))
+            .sum(),
+        Columns::Square { .. } => [[0.25, 0.25], [0.25, 0.75], [0.75, 0.25], [0.75, 0.75]]
+            .into_iter()
+            .map(|u| 0.25 * interpolant(columns, values, columns.point(column, u)))
+            .sum(),
+        Columns::Patches(basis) => mean_over_patch(basis, values, column),
+    }
+}
+
+fn mean_over_patch(basis: &AngleBasis, values: &[Rgb], patch: usize) -> Rgb {
+    let (ring, step) = basis.ring_of(patch);
+    let n = ring.phi_count as f64;
+    let (start, end) = ((step as f64 - 0.5) / n, (step as f64 + 0.5) / n);
+    // The interpolant bends where this ring or a neighbour has a patch centre.
+    let mut bends = vec![start, end];
+    let own = basis.rings().iter().position(|r| r.first() == ring.first()).unwrap_or(0);
+    for other in &basis.rings()[own.saturating_sub(1)..(own + 2).min(basis.rings().len())] {
+        let m = other.phi_count as f64;
+        let centres = ((start * m).ceil() as i64)..=((end * m).floor() as i64);
+        bends.extend(centres.map(|k| k as f64 / m));
+    }
+    bends.sort_by(f64::total_cmp);
+    let mut sum = Rgb::ZERO;
+    for pair in bends.windows(2) {
+        let phi = PI * (pair[0] + pair[1]);
+        for u in [0.25, 0.75] {
+            let sin2 = basis.point(patch, [u, 0.5]).length_squared();
+            sum += 0.5 * (pair[1] - pair[0]) / (end - start) * on_rings(basis, values, sin2, phi);
+        }
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+
+    /// Dense midpoint sums: an independent mean over a column.
+    fn dense_mean(map: &ThroughMap, columns: &Columns, column: usize, n: usize) -> f64 {
+        let mut sum = 0.0;
+        for i in 0..n * n {
+            let u = [((i % n) as f64 + 0.5) / n as f64, ((i / n) as f64 + 0.5) / n as f64];
+            sum += map.at(columns, columns.point(column, u)).x;
+        }
+        sum / (n * n) as f64
+    }
+
+    #[test]
+    fn the_mean_over_each_column_is_its_value() {
+        let klems = |name| Columns::Patches(Arc::new(AngleBasis::known(name).unwrap()));
+        for columns in [
+            Columns::Radial { side: 16 },
+            Columns::Square { side: 8 },
+            klems("LBNL/Klems Full"),
+            klems("LBNL/Klems Quarter"),
+        ] {
+            let values: Vec<Rgb> = (0..columns.len())
+                .map(|i| Rgb::splat(if i % 7 == 3 { 0.0 } else { ((i * 37) % 11) as f64 + 1.0 }))
+                .collect();
+            let map = ThroughMap::new(&columns, values.clone());
+            for (column, value) in values.iter().enumerate() {
+                let got = dense_mean(&map, &columns, column, 96);
+                assert!((got - value.x).abs() <= 2e-3 * value.x, "{columns:?} {column}: {got} {}", value.x);
+            }
+        }
+    }
+
+    #[test]
+    fn a_linear_transmittance_comes_back_exactly() {
+        let columns = Columns::Radial { side: 64 };
+        let through = |r: f64| 0.1 * (1.0 - r);
+        let values =
+            (0..columns.len()).map(|c| Rgb::splat(through(columns.point(c, [0.5, 0.5]).x))).collect();
+        let map = ThroughMap::new(&columns, values);
+        for r in [0.05, 0.31, 0.5, 0.77, 0.9] {
+            assert!((map.at(&columns, DVec2::new(0.0, r)).x - through(r)).abs() < 1e-12);
+        }
+    }
+}

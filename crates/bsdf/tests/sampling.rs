@@ -1,0 +1,159 @@
+//! Samplers against their densities: normalisation, chi-square, energy.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{directions, fabrics, halton, random, shared_bsdfs};
+use glam::DVec2;
+use std::f64::consts::PI;
+use sunpeak_bsdf::{
+    Bsdf, Mode, Oriented, PeakRule,
+    table::{Columns, Table, turned, turned_back},
+};
+use sunpeak_core::{Vec3, luminance};
+
+const RULES: [PeakRule; 2] = [PeakRule::Off, PeakRule::Split];
+
+fn every_bsdf() -> Vec<(String, Bsdf)> {
+    fabrics().into_iter().chain(shared_bsdfs()).collect()
+}
+
+/// Cells a side of [`grid`]: a multiple of every tree's.
+const SIDE: usize = 512;
+
+/// Projected solid angle of a cell of the grid [sr].
+const CELL: f64 = PI / (SIDE * SIDE) as f64;
+
+/// Directions over the sphere, one for each cell of a fine grid on both disks.
+fn grid() -> impl Iterator<Item = Vec3> {
+    (0..SIDE * SIDE).flat_map(|i| {
+        let u = [(i % SIDE) as f64 + 0.5, (i / SIDE) as f64 + 0.5].map(|x| x / SIDE as f64);
+        let v = sunpeak_core::warp::cosine_hemisphere(u);
+        [v, Vec3::new(v.x, v.y, -v.z)]
+    })
+}
+
+/// Groups of cells that are counted together, on each side.
+const GROUPS: usize = 64;
+
+/// The group of cells that a direction falls in: the table's own cells, or, where it is traced against, those of a fine square.
+fn group(bsdf: &Bsdf, w_in: Vec3, w_out: Vec3) -> usize {
+    let mode = if w_in.z * w_out.z > 0.0 { Mode::Reflection } else { Mode::Transmission };
+    let Some(o) = bsdf.distribution(w_in, mode) else { return 0 };
+    let (p_in, p_out) = (-w_in.truncate(), w_out.truncate());
+    let (a, b) = o.points(p_in, p_out);
+    let cell = match o.distribution.luminous() {
+        Table::Tree(t) if o.reversed => {
+            Columns::Square { side: 64 }.index(if t.rank() == 3 { turned(p_in, p_out) } else { p_out })
+        }
+        Table::Matrix(m) if o.reversed => m.incident.index(a),
+        table => table.index(a, b),
+    };
+    2 * (cell % GROUPS) + usize::from(w_out.z > 0.0)
+}
+
+/// Exiting points with their areas [sr], one or more for each cell of [`group`].
+fn exits(o: &Oriented, p_in: DVec2) -> Vec<(DVec2, f64)> {
+    match o.distribution.luminous() {
+        Table::Tree(t) if o.reversed => {
+            let side = 256;
+            let points = (0..side * side).map(|i| {
+                let u = [(i % side) as f64 + 0.5, (i / side) as f64 + 0.5].map(|x| x / side as f64);
+                let p: DVec2 = sunpeak_core::warp::square_to_disk(u).into();
+                let p = if t.rank() == 3 { turned_back(p_in, p) } else { p };
+                (p, PI / (side * side) as f64)
+            });
+            points.collect()
+        }
+        Table::Matrix(m) if o.reversed => (0..m.incident.len())
+            .map(|patch| (-m.incident.point(patch, [0.5, 0.5]), m.incident.projected_solid_angle(patch)))
+            .collect(),
+        table => {
+            let columns = o.distribution.columns();
+            let cells = table.cells(columns, columns.index(p_in));
+            let turn = |p| if table.is_isotropic() { turned_back(p_in, p) } else { p };
+            cells.iter().map(|c| (turn(table.point(c, [0.5, 0.5])), c.projected_solid_angle)).collect()
+        }
+    }
+}
+
+/// Pearson's chi-square of sample counts against the density integrated over groups, and the number of groups.
+fn chi_square(bsdf: &Bsdf, w_in: Vec3, rule: PeakRule) -> Option<(f64, f64)> {
+    let n = 40_000;
+    let mut counts = [0.0; 2 * GROUPS];
+    for i in 0..n {
+        let u = [random(3 * i), random(3 * i + 1), random(3 * i + 2)];
+        counts[group(bsdf, w_in, bsdf.sample_smooth(w_in, u, rule)?.w_out)] += 1.0;
+    }
+    let mut expected = [0.0; 2 * GROUPS];
+    for mode in [Mode::Transmission, Mode::Reflection] {
+        let Some(o) = bsdf.distribution(w_in, mode) else { continue };
+        let up = (w_in.z > 0.0) == (mode == Mode::Reflection);
+        for (p, area) in exits(o, -w_in.truncate()) {
+            let height = (1.0 - p.length_squared()).sqrt();
+            let w_out = p.extend(if up { height } else { -height });
+            let density = bsdf.pdf_smooth(w_in, w_out, rule) / height;
+            expected[group(bsdf, w_in, w_out)] += density * area * f64::from(n);
+        }
+    }
+    let (mut chi, mut groups) = (0.0, 0.0);
+    for (c, e) in counts.iter().zip(expected) {
+        if e > 5.0 {
+            chi += (c - e) * (c - e) / e;
+            groups += 1.0;
+        }
+    }
+    Some((chi, groups))
+}
+
+#[test]
+fn samples_follow_their_density() {
+    for (name, bsdf) in every_bsdf() {
+        for rule in RULES {
+            for w_in in [directions(8, true)[6], directions(5, false)[4]] {
+                let Some((chi, groups)) = chi_square(&bsdf, w_in, rule) else { continue };
+                // Chi-square has the mean `groups` and the variance twice that.
+                let limit = groups + 5.0 * (2.0 * groups).sqrt();
+                assert!(chi < limit, "{name} {rule:?} {w_in}: chi-square {chi} in {groups} groups");
+            }
+        }
+    }
+}
+
+/// The weights' mean is the integral of what is sampled; where columns are the table's own, it is the hemispherical value.
+#[test]
+fn weights_average_to_the_integral() {
+    for (name, bsdf) in every_bsdf() {
+        for rule in RULES {
+            for w_in in [directions(8, true)[6], directions(5, false)[4]] {
+                let n = 8192;
+                let (mut sampled, mut integral) = ([0.0; 2], [0.0; 2]);
+                let reflected = |w: Vec3| usize::from(w.z * w_in.z > 0.0);
+                for i in 0..n {
+                    let u = [halton(i, 2), halton(i, 3), halton(i, 5)];
+                    if let Some(s) = bsdf.sample_smooth(w_in, u, rule) {
+                        sampled[reflected(s.w_out)] += luminance(s.weight) / f64::from(n);
+                    }
+                }
+                for w in grid() {
+                    integral[reflected(w)] += luminance(bsdf.evaluate_smooth(w_in, w, rule)) * CELL;
+                }
+                for (k, mode) in [Mode::Transmission, Mode::Reflection].into_iter().enumerate() {
+                    let (got, truth) = (sampled[k], integral[k]);
+                    assert!(
+                        (got - truth).abs() < 0.03 * truth + 1e-3,
+                        "{name} {rule:?} {mode:?} {w_in}: {got} {truth}"
+                    );
+                    let own = bsdf.distribution(w_in, mode).is_none_or(|o| !o.reversed);
+                    let hemispherical = luminance(bsdf.hemispherical_smooth(w_in, mode, rule));
+                    // The grid knows the area of a patch to two percent.
+                    let limit = if own { 2e-2 } else { 0.1 };
+                    assert!(
+                        (hemispherical - truth).abs() < limit * truth + 1e-4,
+                        "{name} {mode:?}: {hemispherical} {truth}"
+                    );
+                }
+            }
+        }
+    }
+}
