@@ -15,9 +15,16 @@ pub(crate) struct FieldPixel {
     pub solid_angle_sr: f64,
     /// Luminance [cd/m²].
     pub luminance_cd_m2: f64,
-    /// Cosine of the angle to the line of sight: the weight in the vertical illuminance.
+    /// Cosine of the angle to the line of sight, its mean over the pixel: the weight in the vertical illuminance.
     pub cosine: f64,
 }
+
+/// Pixels whose centre is nearer to the rim of the hemisphere than this many pixels get the mean cosine of a grid of points:
+/// in `-vth` it is far from that of the centre.
+const RIM_PIXELS: f64 = 4.0;
+
+/// Points in a row of that grid.
+const RIM_POINTS: usize = 8;
 
 impl FieldPixel {
     /// Illuminance at the eye [lx].
@@ -55,16 +62,9 @@ impl<'a> Field<'a> {
         })?;
         let mut field = Self { view, sight, width, height, pixels: Vec::new() };
         for (index, &value) in picture.pixels.iter().enumerate() {
-            if let Some((direction, solid_angle_sr)) = field.geometry(&camera, index) {
-                let luminance = luminance_of(value).map_err(|what| field.bad_pixel(index, &what))?;
-                let cosine = direction.dot(sight);
-                field.pixels.push(FieldPixel {
-                    index,
-                    direction,
-                    solid_angle_sr,
-                    luminance_cd_m2: luminance,
-                    cosine,
-                });
+            if let Some(mut pixel) = field.geometry(&camera, index) {
+                pixel.luminance_cd_m2 = luminance_of(value).map_err(|what| field.bad_pixel(index, &what))?;
+                field.pixels.push(pixel);
             }
         }
         if field.pixels.is_empty() {
@@ -73,14 +73,46 @@ impl<'a> Field<'a> {
         Ok(field)
     }
 
-    /// Direction and solid angle of a pixel in front of the eye.
-    fn geometry(&self, camera: &Camera, index: usize) -> Option<(Vec3, f64)> {
+    /// The pixel, still black, if its centre lies in front of the eye.
+    fn geometry(&self, camera: &Camera, index: usize) -> Option<FieldPixel> {
         let (column, row) = (index % self.width, index / self.width);
-        let x = (column as f64 + 0.5) / self.width as f64;
-        let y = 1.0 - (row as f64 + 0.5) / self.height as f64;
+        let [x, y] = self.picture_point(column as f64 + 0.5, row as f64 + 0.5);
         let direction = camera.ray(x, y)?.direction;
-        let solid_angle = camera.pixel_solid_angle(column, row, self.width, self.height);
-        (solid_angle > 0.0 && direction.dot(self.sight) > 0.0).then_some((direction, solid_angle))
+        let solid_angle_sr = camera.pixel_solid_angle(column, row, self.width, self.height);
+        let centre_cosine = direction.dot(self.sight);
+        if solid_angle_sr <= 0.0 || centre_cosine <= 0.0 {
+            return None;
+        }
+        let cosine = if centre_cosine < RIM_PIXELS * solid_angle_sr.sqrt() {
+            self.mean_cosine(camera, column, row).unwrap_or(centre_cosine)
+        } else {
+            centre_cosine
+        };
+        Some(FieldPixel { index, direction, solid_angle_sr, luminance_cd_m2: 0.0, cosine })
+    }
+
+    /// Mean cosine over the solid angle of a pixel.
+    fn mean_cosine(&self, camera: &Camera, column: usize, row: usize) -> Option<f64> {
+        let (mut sum, mut weight) = (0.0, 0.0);
+        let step = 1.0 / RIM_POINTS as f64;
+        for i in 0..RIM_POINTS {
+            for j in 0..RIM_POINTS {
+                let (left, top) = (column as f64 + i as f64 * step, row as f64 + j as f64 * step);
+                let [x0, y1] = self.picture_point(left, top);
+                let [x1, y0] = self.picture_point(left + step, top + step);
+                if let Some(ray) = camera.ray((x0 + x1) / 2.0, (y0 + y1) / 2.0) {
+                    let solid_angle = camera.solid_angle([x0, x1], [y0, y1]);
+                    sum += solid_angle * ray.direction.dot(self.sight).max(0.0);
+                    weight += solid_angle;
+                }
+            }
+        }
+        (weight > 0.0).then(|| sum / weight)
+    }
+
+    /// A place in pixels from the top left, as the picture point of a view.
+    fn picture_point(&self, column: f64, row: f64) -> [f64; 2] {
+        [column / self.width as f64, 1.0 - row / self.height as f64]
     }
 
     fn bad_pixel(&self, index: usize, what: &str) -> Error {
