@@ -147,7 +147,8 @@ impl Box {
         if self.bevel == 0.0 {
             return self.polygons(&SIDES);
         }
-        if self.rounded && self.segments > 1 {
+        // As genbox, which keeps cylinders and spheres for two segments too.
+        if self.rounded && self.segments > 2 {
             let faces = rounded_faces(self, subdivisions(self.segments));
             let name = |(i, points): (usize, Vec<Vec3>)| ("polygon", (i + 1).to_string(), flat(&points));
             return faces.into_iter().enumerate().map(name).collect();
@@ -198,7 +199,7 @@ fn flat(points: &[Vec3]) -> Vec<f64> {
     points.iter().flat_map(|p| p.to_array()).collect()
 }
 
-/// How often a rounded edge is halved: genbox rounds the number of segments down to a power of two, at least 2.
+/// How often a rounded edge is halved, for 3 segments or more: 3 and 4 make 4, 5 to 8 make 8, …
 fn subdivisions(segments: u32) -> u32 {
     1 + (segments - 1).ilog2()
 }

@@ -34,7 +34,7 @@ pub fn bright_function(primitive: &Primitive) -> Result<Pattern, String> {
 }
 
 fn cie(primitive: &Primitive) -> Result<SkyDistribution, String> {
-    let reals = at_least(primitive, 7)?;
+    let reals = at_least(primitive, 3)?;
     // The function file selects by A1 rounded.
     let kind = match (reals[0] + 0.5).floor() as i64 {
         1 => CieSky::Clear,
@@ -43,8 +43,13 @@ fn cie(primitive: &Primitive) -> Result<SkyDistribution, String> {
         4 => CieSky::Intermediate,
         _ => return Err(format!("{}: A1 is {}, expected 1, 2, 3 or 4", title(primitive), reals[0])),
     };
-    let (zenith, ground, normalization) = (reals[1], reals[2], reals[3]);
-    Ok(SkyDistribution::Cie { kind, zenith, ground, normalization, sun: triple(reals, 4) })
+    let (zenith, ground) = (reals[1], reals[2]);
+    // Overcast and uniform skies do not look at the rest, and gensky does not write it.
+    let (normalization, sun) = match kind {
+        CieSky::Overcast | CieSky::Uniform if reals.len() < 7 => (1.0, Vec3::Z),
+        _ => at_least(primitive, 7).map(|reals| (reals[3], triple(reals, 4)))?,
+    };
+    Ok(SkyDistribution::Cie { kind, zenith, ground, normalization, sun })
 }
 
 fn perez(primitive: &Primitive) -> Result<SkyDistribution, String> {
