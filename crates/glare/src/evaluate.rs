@@ -25,7 +25,7 @@ pub fn evaluate(picture: &Picture, options: &GlareOptions) -> Result<GlareReport
     let mut warnings = Vec::new();
     let mut field = Field::new(picture)?;
     let coverage = field.coverage();
-    let suns = exact::take_out(&mut field, &picture.exact_sources, &mut warnings);
+    let suns = exact::take_out(&mut field, picture, &mut warnings);
 
     let (threshold_cd_m2, rule) = detect::threshold(&field, options)?;
     let mut sources = detect::sources(&field, threshold_cd_m2, options);

@@ -2,11 +2,11 @@
 
 use crate::field::Field;
 use std::collections::BTreeMap;
-use sunpeak_core::{Vec3, luminance_cd_m2};
-use sunpeak_scene::{ExactSource, disc_coverage};
+use sunpeak_core::{LUMINOUS_EFFICACY, Vec3, luminance_cd_m2};
+use sunpeak_scene::{ExactSource, Picture, disc_coverage};
 
-/// An eight-bit mantissa (RGBE) holds a pixel to this share of its value: what is left of a pixel after a sun was taken
-/// out is known no better.
+/// An eight-bit mantissa (RGBE) holds a pixel to this share of its largest channel: what is left of a pixel after a sun was
+/// taken out is known no better.
 const PIXEL_PRECISION: f64 = 1.0 / 128.0;
 
 /// Widest ring of pixels around a sun that is searched for what may lie behind it [pixels].
@@ -23,16 +23,17 @@ pub(crate) struct VisibleSource {
     pub pixels: usize,
 }
 
-/// Take all exact sources out of the field's pixels. Overlapping ones are taken out together.
+/// Take the picture's exact sources out of the field's pixels. Overlapping ones are taken out together.
 pub(crate) fn take_out(
     field: &mut Field,
-    sources: &[ExactSource],
+    picture: &Picture,
     warnings: &mut Vec<String>,
 ) -> Vec<VisibleSource> {
-    let place: BTreeMap<usize, usize> = match sources {
-        [] => return Vec::new(),
-        _ => field.pixels.iter().enumerate().map(|(i, pixel)| (pixel.index, i)).collect(),
-    };
+    let sources = &picture.exact_sources[..];
+    if sources.is_empty() {
+        return Vec::new();
+    }
+    let place = places(field);
     let mut removed = BTreeMap::new();
     let mut found = Vec::new();
     for source in sources {
@@ -51,15 +52,24 @@ pub(crate) fn take_out(
             "the pixels hold less light than the exact sources in the header say: was the picture changed since?".into(),
         );
     }
-    subtract(field, &removed, &place);
+    subtract(field, picture, &removed, &place);
     found
 }
 
+/// Where each pixel of the picture stands in the field.
+fn places(field: &Field) -> Vec<Option<usize>> {
+    let mut place = vec![None; field.width * field.height];
+    for (i, pixel) in field.pixels.iter().enumerate() {
+        place[pixel.index] = Some(i);
+    }
+    place
+}
+
 /// The pixels (as positions in the field) that the source's disc covers, with their covered share.
-fn covered_pixels(field: &Field, source: &ExactSource, place: &BTreeMap<usize, usize>) -> Vec<(usize, f64)> {
+fn covered_pixels(field: &Field, source: &ExactSource, place: &[Option<usize>]) -> Vec<(usize, f64)> {
     disc_coverage(field.view, field.width, field.height, source.direction, source.solid_angle_sr)
         .into_iter()
-        .filter_map(|(index, share)| place.get(&index).map(|&i| (i, share)))
+        .filter_map(|(index, share)| place[index].map(|i| (i, share)))
         .collect()
 }
 
@@ -104,11 +114,12 @@ fn lacks_light(field: &Field, removed: &BTreeMap<usize, f64>) -> bool {
 }
 
 /// Take the luminances out. Where no more is left than the pixel's own uncertainty, the pixels around say what lies behind.
-fn subtract(field: &mut Field, removed: &BTreeMap<usize, f64>, place: &BTreeMap<usize, usize>) {
+fn subtract(field: &mut Field, picture: &Picture, removed: &BTreeMap<usize, f64>, place: &[Option<usize>]) {
     let mut unknown = Vec::new();
     for (&i, &taken) in removed {
         let pixel = &mut field.pixels[i];
-        let uncertainty = pixel.luminance_cd_m2.max(taken) * PIXEL_PRECISION;
+        let largest = picture.pixels[pixel.index].iter().fold(0.0_f32, |a, &b| a.max(b));
+        let uncertainty = LUMINOUS_EFFICACY * f64::from(largest) * PIXEL_PRECISION;
         pixel.luminance_cd_m2 -= taken;
         if pixel.luminance_cd_m2 <= uncertainty {
             pixel.luminance_cd_m2 = pixel.luminance_cd_m2.max(0.0);
@@ -128,14 +139,14 @@ fn subtract(field: &mut Field, removed: &BTreeMap<usize, f64>, place: &BTreeMap<
 fn mean_around(
     field: &Field,
     i: usize,
-    place: &BTreeMap<usize, usize>,
+    place: &[Option<usize>],
     is_usable: impl Fn(&usize) -> bool,
 ) -> Option<f64> {
     let index = field.pixels[i].index;
     let (column, row) = (index % field.width, index / field.width);
     (1..=WIDEST_RING).find_map(|radius| {
         let around: Vec<f64> = ring(column, row, radius, field.width, field.height)
-            .filter_map(|index| place.get(&index).copied())
+            .filter_map(|index| place[index])
             .filter(&is_usable)
             .map(|i| field.pixels[i].luminance_cd_m2)
             .collect();

@@ -3,14 +3,14 @@
 use std::f64::consts::PI;
 use sunpeak_core::Vec3;
 
-/// Largest position index: where Guth's chart ends, and with it evalglare.
+/// Largest position index, as in evalglare: towards the top of the field of view the polynomial runs away from Guth's data.
 const LARGEST: f64 = 16.0;
 
 /// Model for sources below the line of sight, where Guth did not measure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BelowSight {
     /// As at the side, tau = 90 degrees: continuous at the height of the eyes (Iwata and Osterhaus 2010, "Assessment of
-    /// discomfort glare in daylit offices using luminance distribution images", CIE x035). evalglare from 2.09 is within 11 %.
+    /// discomfort glare in daylit offices using luminance distribution images", CIE x035). evalglare 3.06 is within 11 %.
     #[default]
     IwataOsterhaus,
     /// Iwata and Tokura 1997, "Position index for a glare source located below the line of vision", Lighting Research &
@@ -67,10 +67,9 @@ mod tests {
         position_index(direction, Vec3::Y, Vec3::Z, BelowSight::default())
     }
 
-    /// evalglare 3.06 -d for single bright pixels (sigma and tau in degrees as it prints them).
+    /// What `evalglare -d` 3.06 prints for sources in two real pictures.
     #[test]
     fn agrees_with_evalglare_above_the_line_of_sight() {
-        // Two sources of its own test picture and one of the two-exposures picture.
         let window = Vec3::new(0.607436, 0.761906, 0.224770);
         assert!((index(window) / 2.545465 - 1.0).abs() < 1e-4);
         let lamp = Vec3::new(0.353150, 0.935562, 0.002825);

@@ -177,18 +177,21 @@ fn suns_may_overlap_be_half_hidden_and_stand_at_the_edge() {
     let mut scene = fisheye(500, |_| 300.0);
     add_sun(&mut scene, towards(10.0, 20.0), gray(4e5), 0.5);
     add_sun(&mut scene, towards(10.2, 20.1), Rgb::new(3e5, 2e5, 1e5), 1.0);
+    add_sun(&mut scene, towards(-40.0, 12.0), Rgb::new(1e6, 1e3, 1e3), 1.0);
     add_sun(&mut scene, Vec3::X, gray(4e5), 1.0);
     quantise(&mut scene);
     let found = report(&scene);
-    assert_eq!(found.sources.iter().filter(|s| s.exact).count(), 3);
-    assert_eq!(found.sources.len(), 3, "{:?}", found.sources);
+    assert_eq!(found.sources.iter().filter(|s| s.exact).count(), 4);
+    assert_eq!(found.sources.len(), 4, "{:?}", found.sources);
     let solid_angle = cone_solid_angle(SUN_DEG);
     let at_edge = found.sources.iter().find(|s| s.direction.distance(Vec3::X) < 1e-6).unwrap();
     assert!((at_edge.solid_angle_sr / solid_angle - 0.5).abs() < 0.1, "{at_edge:?}");
     let half = found.sources.iter().find(|s| s.direction.distance(towards(10.0, 20.0)) < 1e-6).unwrap();
     assert!((half.solid_angle_sr / solid_angle - 0.5).abs() < 1e-9);
     let colored = 179.0 * (0.265 * 3e5 + 0.670 * 2e5 + 0.065 * 1e5);
-    let suns = solid_angle * (0.5 * 179.0 * 4e5 * towards(10.0, 20.0).y + colored * towards(10.2, 20.1).y);
+    let red = 179.0 * (0.265 * 1e6 + 0.735 * 1e3);
+    let overlapping = 0.5 * 179.0 * 4e5 * towards(10.0, 20.0).y + colored * towards(10.2, 20.1).y;
+    let suns = solid_angle * (overlapping + red * towards(-40.0, 12.0).y);
     let ev = 300.0 * PI + suns + at_edge.illuminance_lux;
     assert!((found.ev_lux / ev - 1.0).abs() < 1e-3, "{} {ev}", found.ev_lux);
 }
