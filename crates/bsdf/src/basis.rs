@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 use std::f64::consts::PI;
-use sunpeak_core::{Error, Result};
+use sunpeak_core::{Error, Result, warp::square_to_disk};
 
 /// A division of the hemisphere into patches.
 #[derive(Clone, Debug, PartialEq)]
@@ -138,12 +138,14 @@ impl AngleBasis {
         PI * (ring.upper_sin2 - ring.lower_sin2) / ring.phi_count as f64
     }
 
-    /// A point of a patch in the unit disk, uniform in projected solid angle for uniform `u`.
+    /// A point of a patch in the unit disk, uniform in projected solid angle for uniform `u`; its middle at (0.5, 0.5).
     pub fn point(&self, patch: usize, u: [f64; 2]) -> DVec2 {
         let (ring, step) = self.ring_of(patch);
-        let sin2 = ring.lower_sin2 + u[0] * (ring.upper_sin2 - ring.lower_sin2);
+        if ring.phi_count == 1 {
+            return DVec2::from(square_to_disk(u)) * ring.upper_sin2.sqrt(); // the pole: a disk, not a ring
+        }
         let phi = 2.0 * PI * (step as f64 + u[1] - 0.5) / ring.phi_count as f64;
-        DVec2::from_angle(phi) * sin2.sqrt()
+        DVec2::from_angle(phi) * ring.sin2(u[0]).sqrt()
     }
 }
 
@@ -153,9 +155,9 @@ impl Ring {
         self.first
     }
 
-    /// sin² of theta at half the ring's projected solid angle.
-    pub fn middle_sin2(&self) -> f64 {
-        0.5 * (self.lower_sin2 + self.upper_sin2)
+    /// sin² of theta below which the share `u` of the ring's projected solid angle lies.
+    pub fn sin2(&self, u: f64) -> f64 {
+        self.lower_sin2 + u * (self.upper_sin2 - self.lower_sin2)
     }
 }
 

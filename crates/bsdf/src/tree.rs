@@ -299,8 +299,8 @@ mod tests {
             let tree = Tree::from_nested(3, root.clone());
             prop_assert_eq!(tree.value(p), look_up(&root, 3, p));
             let leaf = tree.leaf(p);
-            for d in 0..3 {
-                prop_assert!(leaf.corner[d] <= p[d] && p[d] < leaf.corner[d] + leaf.size);
+            for (corner, x) in leaf.corner.iter().zip(p).take(3) {
+                prop_assert!(*corner <= x && x < corner + leaf.size);
             }
         }
 

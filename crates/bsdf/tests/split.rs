@@ -137,9 +137,15 @@ fn all_of_clear_glass_goes_through() {
             let o = bsdf.distribution(w_in, Mode::Transmission).unwrap();
             let (a, _) = o.points(-w_in.truncate(), -w_in.truncate());
             let column = &o.distribution.split().columns()[o.distribution.columns().index(a)];
+            // One of the files was sampled with rays, of which some strayed to other cells: they are no part of the peak.
+            let straight =
+                luminance(o.distribution.value(a, a)) * o.distribution.luminous().projected_solid_angle(a, a);
             let whole = luminance(bsdf.hemispherical_smooth(w_in, Mode::Transmission, PeakRule::Off));
-            // Rays that strayed when the file was sampled are not part of the peak.
-            assert!((luminance(column.through) / whole - 1.0).abs() < 2e-3, "{name} {w_in}");
+            let (got, strayed) = (luminance(column.through), whole - straight);
+            assert!(
+                straight - got <= strayed.max(1e-4) && strayed < 0.01,
+                "{name} {w_in}: {got} of {straight} of {whole}"
+            );
         }
     }
 }

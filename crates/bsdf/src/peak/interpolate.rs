@@ -78,7 +78,7 @@ fn between(at: f64, last: usize) -> (usize, f64) {
 
 fn on_rings(basis: &AngleBasis, values: &[Rgb], sin2: f64, phi: f64) -> Rgb {
     let rings = basis.rings();
-    let upper = rings.partition_point(|r| r.middle_sin2() <= sin2);
+    let upper = rings.partition_point(|r| r.sin2(0.5) <= sin2);
     let ring = |n: usize| {
         let ring = &rings[n];
         let at = (phi / (2.0 * PI)).rem_euclid(1.0) * ring.phi_count as f64;
@@ -92,7 +92,7 @@ fn on_rings(basis: &AngleBasis, values: &[Rgb], sin2: f64, phi: f64) -> Rgb {
     if upper == rings.len() {
         return ring(upper - 1);
     }
-    let (a, b) = (rings[upper - 1].middle_sin2(), rings[upper].middle_sin2());
+    let (a, b) = (rings[upper - 1].sin2(0.5), rings[upper].sin2(0.5));
     ring(upper - 1).lerp(ring(upper), (sin2 - a) / (b - a))
 }
 
@@ -128,8 +128,7 @@ fn mean_over_patch(basis: &AngleBasis, values: &[Rgb], patch: usize) -> Rgb {
     for pair in bends.windows(2) {
         let phi = PI * (pair[0] + pair[1]);
         for u in [0.25, 0.75] {
-            let sin2 = basis.point(patch, [u, 0.5]).length_squared();
-            sum += 0.5 * (pair[1] - pair[0]) / (end - start) * on_rings(basis, values, sin2, phi);
+            sum += 0.5 * (pair[1] - pair[0]) / (end - start) * on_rings(basis, values, ring.sin2(u), phi);
         }
     }
     sum
