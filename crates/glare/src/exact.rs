@@ -78,7 +78,8 @@ fn visible_part(field: &Field, source: &ExactSource, covered: &[(usize, f64)]) -
     let solid_angle = |&(i, share): &(usize, f64)| share * field.pixels[i].solid_angle_sr;
     let in_view: f64 = covered.iter().map(solid_angle).sum();
     let luminance = luminance_cd_m2(source.radiance);
-    if in_view <= 0.0 || luminance <= 0.0 || source.visible_fraction <= 0.0 {
+    let is_light = [in_view, luminance, source.visible_fraction].iter().all(|&v| v > 0.0 && v.is_finite());
+    if !is_light {
         return None;
     }
     // A disc that is all in view counts with its own cosine, not with that of the pixels' centres.

@@ -202,6 +202,9 @@ fn a_changed_or_foreign_sun_is_noted() {
     add_sun(&mut scene, towards(10.0, 20.0), gray(4e5), 1.0);
     scene.exact_sources[0].radiance = gray(9e5);
     assert!(report(&scene).warnings.iter().any(|w| w.contains("less light")));
+    scene.exact_sources[0].radiance = Rgb::splat(f64::NAN);
+    assert!(report(&scene).dgp.is_finite());
+    scene.exact_sources[0].radiance = gray(4e5);
     scene.exact_sources[0].direction = -Vec3::Y;
     assert!(report(&scene).warnings.iter().any(|w| w.contains("outside the picture")));
 }
