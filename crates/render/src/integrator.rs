@@ -1,0 +1,186 @@
+//! Unbiased path tracing with next-event estimation and multiple importance sampling.
+//!
+//! Straight passes are null events. They do not end a path segment: the last scattering vertex keeps its density, and a source
+//! met behind any number of layers is weighed against the shadow ray that passed the same layers. Only on chains that are
+//! straight or mirrored all the way from the camera does a source count in full.
+
+mod direct;
+mod path;
+
+use crate::exact_sun::ExactSuns;
+use crate::material::{Arrival, Material, Scattering, Smooth};
+use crate::shapes::Ray;
+use crate::world::{Facing, Object, Seen};
+use crate::{RenderOptions, World};
+use path::{Departure, Path};
+use sunpeak_core::{Frame, Rgb, Sampler, Vec3, luminance};
+
+/// Events after which Russian roulette may end a path.
+const ROULETTE_START: u32 = 4;
+
+/// Chance of survival is never above this, so that paths in white rooms end.
+const ROULETTE_CEILING: f64 = 0.95;
+
+/// Limits of a path.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limits {
+    pub max_bounces: Option<u32>,
+    pub max_depth: u32,
+}
+
+impl Limits {
+    pub fn of(options: &RenderOptions) -> Self {
+        Self { max_bounces: options.max_bounces, max_depth: options.max_depth }
+    }
+}
+
+/// Estimates radiance along rays.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Integrator<'w> {
+    pub world: &'w World,
+    pub limits: Limits,
+    /// Suns that are put into the picture by other means, and are not to be seen by straight or mirrored chains.
+    pub exact_suns: Option<&'w ExactSuns>,
+}
+
+impl Integrator<'_> {
+    /// Radiance that arrives along the ray from surfaces before `reach` (and from infinity if that is infinite).
+    pub fn radiance(&self, ray: Ray, reach: f64, sampler: &mut Sampler) -> Rgb {
+        self.trace(Path::from_camera(ray, reach), sampler)
+    }
+
+    /// Irradiance [W/m²] on the front of a surface element.
+    pub fn irradiance(&self, point: Vec3, normal: Vec3, sampler: &mut Sampler) -> Rgb {
+        let sensor = Met::sensor(point, normal);
+        let mut path = Path::from_camera(Ray { origin: point, direction: -normal }, f64::INFINITY);
+        let direct = self.direct(&path, &sensor, sampler);
+        if !self.scatter(&mut path, &sensor, sampler) {
+            return direct;
+        }
+        direct + self.trace(path, sampler)
+    }
+
+    fn trace(&self, mut path: Path, sampler: &mut Sampler) -> Rgb {
+        let mut sum = Rgb::ZERO;
+        while path.events <= self.limits.max_depth {
+            let Some(hit) = self.world.accel.closest(&path.ray, path.reach) else {
+                return sum + path.throughput * self.light_from_infinity(&path);
+            };
+            let object = self.world.object(&hit);
+            let arrival = self.world.arrival(&hit, &path.ray);
+            path.travel(hit.t);
+            match self.world.seen(object, &arrival, path.is_view()) {
+                Seen::Void => path.go_straight(arrival.point, Rgb::ONE),
+                Seen::Emitter(emitter) => {
+                    return sum + path.throughput * self.light_from_lamp(&path, object, &arrival, emitter);
+                }
+                Seen::Surface(material) => {
+                    path.absorb(material, &arrival, hit.t);
+                    let met = Met::new(object, material, arrival, path.is_view());
+                    if met.smooth_share() > 0.0 {
+                        sum += path.throughput * self.direct(&path, &met, sampler);
+                    }
+                    if !self.go_on(&mut path, &met, sampler) || !survives(&mut path, sampler) {
+                        return sum;
+                    }
+                }
+            }
+        }
+        sum
+    }
+
+    /// Choose one of the ways on; `false` if the path ends here.
+    fn go_on(&self, path: &mut Path, met: &Met, sampler: &mut Sampler) -> bool {
+        let [straight, mirrored, refracted, smooth] = met.shares;
+        let whole = straight + mirrored + refracted + smooth;
+        if whole <= 0.0 {
+            return false;
+        }
+        let choice = sampler.next_1d() * whole;
+        if choice < straight {
+            path.go_straight(met.arrival.point, met.scattering.straight * (whole / straight));
+        } else if choice < straight + mirrored {
+            path.mirror(&met.arrival, met.scattering.mirrored * (whole / mirrored), met.is_flat);
+        } else if choice < straight + mirrored + refracted {
+            let Some((direction, share)) = met.scattering.refracted else { return false };
+            path.refract(&met.arrival, direction, share * (whole / refracted), met.material);
+        } else {
+            return self.scatter(path, met, sampler);
+        }
+        true
+    }
+
+    /// Go on in a direction drawn from the smooth lobes.
+    fn scatter(&self, path: &mut Path, met: &Met, sampler: &mut Sampler) -> bool {
+        let Some(sample) = met.scattering.smooth.sample(sampler) else { return false };
+        let share = met.smooth_share();
+        let mut weight = sample.weight.total();
+        if let Some(limit) = self.limits.max_bounces {
+            // Which lobe was it? Drawn in proportion, so that each lobe keeps its mean.
+            let diffuse = luminance(sample.weight.diffuse) / luminance(weight);
+            let is_diffuse = sampler.next_1d() < diffuse;
+            if is_diffuse && path.bounces >= limit {
+                return false;
+            }
+            weight = if is_diffuse {
+                sample.weight.diffuse / diffuse
+            } else {
+                sample.weight.glossy / (1.0 - diffuse)
+            };
+            path.bounces += u32::from(is_diffuse);
+        }
+        let point = met.arrival.point;
+        let departure = Departure { point, pdf: sample.pdf * share, source_factor: sample.source_factor };
+        path.depart(departure, sample.direction, weight / share);
+        true
+    }
+}
+
+/// A surface that a path has met.
+struct Met<'w> {
+    arrival: Arrival,
+    /// `None` for a sensor.
+    material: Option<&'w Material>,
+    is_flat: bool,
+    scattering: Scattering<'w>,
+    /// Luminous weights of the ways on: straight, mirrored, refracted, smooth.
+    shares: [f64; 4],
+}
+
+impl<'w> Met<'w> {
+    fn new(object: &Object, material: &'w Material, arrival: Arrival, view: bool) -> Self {
+        let scattering = material.scatter(&arrival, view);
+        let refracted = scattering.refracted.map_or(0.0, |(_, share)| luminance(share));
+        let [straight, mirrored] = [scattering.straight, scattering.mirrored].map(luminance);
+        let shares = [straight, mirrored, refracted, scattering.smooth.albedo()];
+        let is_flat = matches!(object.facing, Facing::Flat(_));
+        Self { arrival, material: Some(material), is_flat, scattering, shares }
+    }
+
+    /// A surface element that takes up all light at its front.
+    fn sensor(point: Vec3, normal: Vec3) -> Self {
+        let arrival = Arrival { point, normal, direction: -normal };
+        let scattering =
+            Scattering { smooth: Smooth::Sensor(Frame::from_normal(normal)), ..Scattering::BLACK };
+        Self { arrival, material: None, is_flat: true, scattering, shares: [0.0, 0.0, 0.0, 1.0] }
+    }
+
+    /// Chance that a path goes on by the smooth lobes.
+    fn smooth_share(&self) -> f64 {
+        if self.shares[3] > 0.0 { self.shares[3] / self.shares.iter().sum::<f64>() } else { 0.0 }
+    }
+}
+
+/// Russian roulette.
+fn survives(path: &mut Path, sampler: &mut Sampler) -> bool {
+    let largest = path.throughput.max_element();
+    if path.events < ROULETTE_START || largest <= 0.0 {
+        return largest > 0.0;
+    }
+    let chance = largest.min(ROULETTE_CEILING);
+    path.throughput /= chance;
+    sampler.next_1d() < chance
+}
+
+#[cfg(test)]
+mod tests;

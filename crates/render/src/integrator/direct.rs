@@ -1,0 +1,192 @@
+//! Light that arrives from emitters: by shadow rays, and by paths that meet them.
+
+use super::{Integrator, Met, path::Path};
+use crate::light::{LightSample, power_heuristic};
+use crate::material::{Arrival, Emitter, Smooth, reflect};
+use crate::shapes::Ray;
+use crate::transmit::Target;
+use crate::world::{Facing, Object};
+use sunpeak_core::{Rgb, Sampler, Vec3};
+
+/// Up to so many pairs of sun and mirror are all tried at every vertex; of more, one at random.
+const ALL_REFLECTED_SUNS: usize = 4;
+
+impl Integrator<'_> {
+    /// Light from emitters that the smooth lobes scatter back along the path.
+    pub(super) fn direct(&self, path: &Path, met: &Met, sampler: &mut Sampler) -> Rgb {
+        let receiver = Receiver {
+            arrival: &met.arrival,
+            smooth: &met.scattering.smooth,
+            share: met.smooth_share(),
+            is_last: self.is_last(path),
+        };
+        let mut sum = Rgb::ZERO;
+        for &sun in self.world.distant.suns() {
+            if let Some(sample) = self.world.distant.sample_sun(sun, sampler.next_2d()) {
+                sum += self.received(&receiver, &sample, &Target::sun(sun, &sample));
+            }
+        }
+        sum += self.suns_in_mirrors(&receiver, sampler);
+        if self.world.distant.has_dome()
+            && let Some(sample) = self.world.distant.sample_dome(sampler.next_2d())
+        {
+            sum += self.received(&receiver, &sample, &Target::of(&sample));
+        }
+        if !self.world.lamps.is_empty()
+            && let Some(sample) =
+                self.world.lamps.sample(met.arrival.point, sampler.next_1d(), sampler.next_2d())
+        {
+            sum += self.received(&receiver, &sample, &Target::of(&sample));
+        }
+        sum
+    }
+
+    /// May no diffuse bounce follow?
+    fn is_last(&self, path: &Path) -> bool {
+        self.limits.max_bounces.is_some_and(|limit| path.bounces >= limit)
+    }
+
+    fn received(&self, receiver: &Receiver, sample: &LightSample, target: &Target) -> Rgb {
+        let value = receiver.smooth_value(sample);
+        if value.total() == Rgb::ZERO || sample.radiance == Rgb::ZERO {
+            return Rgb::ZERO;
+        }
+        let ray = Ray { origin: receiver.arrival.point, direction: sample.direction };
+        let transmitted = self.world.transmitted(&ray, target);
+        if transmitted.is_blocked() {
+            return Rgb::ZERO;
+        }
+        let finds =
+            !transmitted.only_by_shadow_rays && (!sample.is_direct || receiver.smooth.samples_find_sources());
+        let other = if finds { receiver.share * receiver.smooth.pdf(sample.direction) } else { 0.0 };
+        let weight = power_heuristic(sample.pdf, other);
+        // Past the last bounce no sampled path finds what a diffuse lobe gets from a light source; from the sky it gets none.
+        let diffuse_weight = match (receiver.is_last, sample.is_direct) {
+            (false, _) => weight,
+            (true, true) => 1.0,
+            (true, false) => 0.0,
+        };
+        let scattered = value.diffuse * diffuse_weight + value.glossy * weight;
+        scattered * sample.radiance * transmitted.share * (receiver.cosine(sample.direction) / sample.pdf)
+    }
+
+    /// Suns reflected by planar mirrors: Radiance's virtual sources. Sampled paths leave them out.
+    fn suns_in_mirrors(&self, receiver: &Receiver, sampler: &mut Sampler) -> Rgb {
+        let (suns, mirrors) = (self.world.distant.suns(), &self.world.mirrors);
+        let pairs = suns.len() * mirrors.len();
+        let pair = |i: usize| (suns[i / mirrors.len()], mirrors[i % mirrors.len()]);
+        if pairs <= ALL_REFLECTED_SUNS {
+            return (0..pairs).map(|i| self.sun_in_mirror(receiver, pair(i), sampler.next_2d())).sum();
+        }
+        let chosen = ((sampler.next_1d() * pairs as f64) as usize).min(pairs - 1);
+        self.sun_in_mirror(receiver, pair(chosen), sampler.next_2d()) * pairs as f64
+    }
+
+    fn sun_in_mirror(&self, receiver: &Receiver, (sun, mirror): (usize, u32), u: [f64; 2]) -> Rgb {
+        let world = self.world;
+        let Some(sample) = world.distant.sample_sun(sun, u) else { return Rgb::ZERO };
+        let Facing::Flat(normal) = world.objects[mirror as usize].facing else { return Rgb::ZERO };
+        if sample.direction.dot(normal) <= 0.0 {
+            return Rgb::ZERO;
+        }
+        let ray = Ray { origin: receiver.arrival.point, direction: reflect(sample.direction, normal) };
+        let Some(hit) = world.accel.crossing_of(&ray, mirror) else { return Rgb::ZERO };
+        let value = receiver.smooth_value(&LightSample { direction: ray.direction, ..sample });
+        if value.total() == Rgb::ZERO {
+            return Rgb::ZERO;
+        }
+        let to_mirror = world.transmitted(&ray, &Target::point(hit, mirror));
+        if to_mirror.is_blocked() {
+            return Rgb::ZERO;
+        }
+        let onwards = Ray { origin: ray.at(hit), direction: sample.direction };
+        let to_sun = world.transmitted(&onwards, &Target::sun(sun, &sample));
+        let reflectance = world.mirror_reflectance(mirror);
+        let factor = receiver.cosine(ray.direction) / sample.pdf;
+        value.total() * sample.radiance * to_mirror.share * reflectance * to_sun.share * factor
+    }
+
+    /// What a path that meets nothing finds at infinity.
+    pub(super) fn light_from_infinity(&self, path: &Path) -> Rgb {
+        if path.reach.is_finite() {
+            return Rgb::ZERO;
+        }
+        let direction = path.ray.direction;
+        let Some(index) = self.world.distant.seen(direction) else { return Rgb::ZERO };
+        let source = self.world.distant.get(index);
+        if source.is_small() && self.is_small_source_left_out(path, index) {
+            return Rgb::ZERO;
+        }
+        let shadow_pdf = || self.world.distant.pdf(index, direction);
+        source.emitter.radiance(direction) * weight(path, &source.emitter, f64::INFINITY, shadow_pdf)
+    }
+
+    /// Suns are not left to chance: behind a mirror or a solid of glass that a scattered path met they are found by
+    /// virtual sources or not at all; in a picture they are put in exactly.
+    fn is_small_source_left_out(&self, path: &Path, index: usize) -> bool {
+        match path.departure {
+            Some(_) => path.is_bent,
+            None => {
+                let exact = self.exact_suns.filter(|_| !path.is_distorted);
+                exact.is_some_and(|suns| suns.contain(index, path.first_direction))
+            }
+        }
+    }
+
+    /// What a path finds at an emitting surface.
+    pub(super) fn light_from_lamp(
+        &self,
+        path: &Path,
+        object: &Object,
+        arrival: &Arrival,
+        emitter: &Emitter,
+    ) -> Rgb {
+        if !arrival.at_front() {
+            return Rgb::ZERO;
+        }
+        let direction = path.ray.direction;
+        let Some(departure) = path.departure else { return emitter.radiance(direction) };
+        let distance = departure.point.distance(arrival.point);
+        let shadow_pdf = || {
+            object.lamp.map_or(0.0, |lamp| {
+                self.world.lamps.pdf(lamp as usize, departure.point, direction, distance, arrival.normal)
+            })
+        };
+        emitter.radiance(direction)
+            * (emitter.falloff(distance) * weight(path, emitter, distance, shadow_pdf))
+    }
+}
+
+/// Weight of an emitter that a path has met, against shadow rays to it from the last vertex.
+fn weight(path: &Path, emitter: &Emitter, distance: f64, shadow_pdf: impl Fn() -> f64) -> f64 {
+    let Some(departure) = path.departure else { return 1.0 };
+    if !emitter.illuminates() {
+        return 0.0;
+    }
+    let factor = if emitter.is_direct(distance) { departure.source_factor } else { 1.0 };
+    if path.is_bent { factor } else { factor * power_heuristic(departure.pdf, shadow_pdf()) }
+}
+
+/// Where light is received.
+struct Receiver<'a, 'w> {
+    arrival: &'a Arrival,
+    smooth: &'a Smooth<'w>,
+    /// Chance that a path goes on by the smooth lobes.
+    share: f64,
+    /// May no diffuse bounce follow?
+    is_last: bool,
+}
+
+impl Receiver<'_, '_> {
+    fn smooth_value(&self, sample: &LightSample) -> crate::material::SmoothValue {
+        if sample.is_direct {
+            self.smooth.toward_source(sample.direction, sample.solid_angle)
+        } else {
+            self.smooth.evaluate(sample.direction)
+        }
+    }
+
+    fn cosine(&self, direction: Vec3) -> f64 {
+        direction.dot(self.arrival.normal).abs()
+    }
+}

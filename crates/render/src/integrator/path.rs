@@ -1,0 +1,112 @@
+//! The state of a path while it is traced.
+
+use crate::material::{Arrival, Material};
+use crate::shapes::Ray;
+use sunpeak_core::{Rgb, Vec3};
+
+/// The last vertex at which the path was scattered.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Departure {
+    pub point: Vec3,
+    /// Density [1/sr] of the direction that was taken.
+    pub pdf: f64,
+    /// What light sources in this direction are multiplied with.
+    pub source_factor: f64,
+}
+
+/// A path from the camera or a sensor.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Path {
+    pub ray: Ray,
+    /// Nothing farther than this is seen (a view's aft plane).
+    pub reach: f64,
+    pub throughput: Rgb,
+    /// Surfaces met.
+    pub events: u32,
+    /// Diffuse bounces taken.
+    pub bounces: u32,
+    /// `None` while the chain reaches back to the camera.
+    pub departure: Option<Departure>,
+    /// Mirrored or refracted since the departure, or since the camera?
+    pub is_bent: bool,
+    /// Refracted, or mirrored by a curved surface, since the camera?
+    pub is_distorted: bool,
+    /// Direction of the first segment.
+    pub first_direction: Vec3,
+    /// Extinction of the medium [1/m].
+    extinction: Rgb,
+}
+
+impl Path {
+    pub fn from_camera(ray: Ray, reach: f64) -> Self {
+        Self {
+            ray,
+            reach,
+            throughput: Rgb::ONE,
+            events: 0,
+            bounces: 0,
+            departure: None,
+            is_bent: false,
+            is_distorted: false,
+            first_direction: ray.direction,
+            extinction: Rgb::ZERO,
+        }
+    }
+
+    /// Does the path come from the camera with nothing but straight passes, mirrors and refractions?
+    pub fn is_view(&self) -> bool {
+        self.departure.is_none()
+    }
+
+    /// Count the way to a surface.
+    pub fn travel(&mut self, distance: f64) {
+        self.reach -= distance;
+        self.events += 1;
+        if self.extinction != Rgb::ZERO {
+            self.throughput *= (-self.extinction * distance).exp();
+        }
+    }
+
+    /// Weaken the way to the inside face of a solid that the path did not enter by a face: it started inside.
+    pub fn absorb(&mut self, material: &Material, arrival: &Arrival, distance: f64) {
+        if let Material::Dielectric(solid) = material
+            && !arrival.at_front()
+            && self.extinction == Rgb::ZERO
+        {
+            self.throughput *= (-solid.extinction() * distance).exp();
+        }
+    }
+
+    /// A null event.
+    pub fn go_straight(&mut self, point: Vec3, share: Rgb) {
+        self.ray.origin = point;
+        self.throughput *= share;
+    }
+
+    pub fn mirror(&mut self, arrival: &Arrival, share: Rgb, is_flat: bool) {
+        self.ray = Ray { origin: arrival.point, direction: arrival.mirrored() };
+        self.reach = f64::INFINITY;
+        self.throughput *= share;
+        self.is_bent = true;
+        self.is_distorted |= !is_flat;
+    }
+
+    pub fn refract(&mut self, arrival: &Arrival, direction: Vec3, share: Rgb, material: Option<&Material>) {
+        self.ray = Ray { origin: arrival.point, direction };
+        self.throughput *= share;
+        self.is_bent = true;
+        self.is_distorted = true;
+        self.extinction = match material {
+            Some(Material::Dielectric(solid)) if arrival.at_front() => solid.extinction(),
+            _ => Rgb::ZERO,
+        };
+    }
+
+    pub fn depart(&mut self, departure: Departure, direction: Vec3, weight: Rgb) {
+        self.ray = Ray { origin: departure.point, direction };
+        self.reach = f64::INFINITY;
+        self.throughput *= weight;
+        self.departure = Some(departure);
+        self.is_bent = false;
+    }
+}

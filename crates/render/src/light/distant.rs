@@ -1,0 +1,197 @@
+//! `source`s: cones of directions at infinity.
+//!
+//! Where sources overlap one of them is seen, as in Radiance: the first light source in the scene's order, else the first
+//! `illum`, else the first `glow`. A sun stands before the sky and does not add to it.
+
+use super::{LightSample, dome::Dome};
+use crate::SMALL_SOURCE_DEG;
+use crate::material::{Emitter, EmitterKind};
+use sunpeak_core::{Frame, Rgb, Vec3, cone_solid_angle, warp};
+
+/// One `source`.
+#[derive(Clone, Debug)]
+pub(crate) struct Distant {
+    /// Unit vector towards its centre.
+    pub direction: Vec3,
+    /// Full angle [deg].
+    pub angle_deg: f64,
+    /// What it emits.
+    pub emitter: Emitter,
+}
+
+impl Distant {
+    pub fn solid_angle(&self) -> f64 {
+        cone_solid_angle(self.angle_deg)
+    }
+
+    pub fn contains(&self, direction: Vec3) -> bool {
+        // 1 - cos from the chord, which keeps its digits for a disc as small as the sun's.
+        let height = 0.5 * (direction - self.direction).length_squared();
+        height <= 2.0 * (self.angle_deg.to_radians() / 4.0).sin().powi(2)
+    }
+
+    /// Is it a sun: sampled one by one, and not left to chance?
+    pub fn is_small(&self) -> bool {
+        self.angle_deg < SMALL_SOURCE_DEG
+    }
+
+    /// A direction into it, uniform over its solid angle.
+    pub fn sample_direction(&self, u: [f64; 2]) -> Vec3 {
+        Frame::from_normal(self.direction).to_world(warp::uniform_cone(u, self.angle_deg))
+    }
+
+    /// Rank where sources overlap; the smallest is seen.
+    fn rank(&self) -> u8 {
+        match self.emitter.kind {
+            EmitterKind::Light | EmitterKind::Spotlight { .. } => 0,
+            EmitterKind::Illum { alternate: Some(_) } => 0,
+            EmitterKind::Illum { alternate: None } => 1,
+            EmitterKind::Glow { .. } => 2,
+        }
+    }
+}
+
+/// All sources of a scene.
+#[derive(Debug, Default)]
+pub(crate) struct DistantSources {
+    sources: Vec<Distant>,
+    /// Suns that light: indices among `sources`.
+    suns: Vec<usize>,
+    dome: Option<Dome>,
+}
+
+impl DistantSources {
+    /// In the scene's order.
+    pub fn new(mut sources: Vec<Distant>) -> Self {
+        sources.sort_by_key(Distant::rank);
+        let lights = |s: &Distant| s.emitter.illuminates();
+        let suns = (0..sources.len()).filter(|&i| sources[i].is_small() && lights(&sources[i])).collect();
+        let mut all = Self { sources, suns, dome: None };
+        let has_dome = all.sources.iter().any(|s| !s.is_small() && lights(s));
+        all.dome = has_dome.then(|| Dome::new(|d| all.dome_radiance(d))).flatten();
+        all
+    }
+
+    /// The source that is seen in a direction.
+    pub fn seen(&self, direction: Vec3) -> Option<usize> {
+        self.sources.iter().position(|s| s.contains(direction))
+    }
+
+    pub fn get(&self, index: usize) -> &Distant {
+        &self.sources[index]
+    }
+
+    /// Indices of the suns that light.
+    pub fn suns(&self) -> &[usize] {
+        &self.suns
+    }
+
+    /// Is there light from anything else than suns?
+    pub fn has_dome(&self) -> bool {
+        self.dome.is_some()
+    }
+
+    /// Radiance of all that lights and is no sun.
+    fn dome_radiance(&self, direction: Vec3) -> Rgb {
+        match self.seen(direction).map(|i| &self.sources[i]) {
+            Some(s) if !s.is_small() && s.emitter.illuminates() => s.emitter.radiance(direction),
+            _ => Rgb::ZERO,
+        }
+    }
+
+    /// Density [1/sr] with which shadow rays are sent in a direction in which source `index` is seen.
+    pub fn pdf(&self, index: usize, direction: Vec3) -> f64 {
+        let source = &self.sources[index];
+        match (&self.dome, source.is_small()) {
+            (_, true) => 1.0 / source.solid_angle(),
+            (Some(dome), false) => dome.pdf(direction),
+            (None, false) => 0.0,
+        }
+    }
+
+    /// A direction to sun `index`; `None` where another source stands before it.
+    pub fn sample_sun(&self, index: usize, u: [f64; 2]) -> Option<LightSample> {
+        let sun = &self.sources[index];
+        let direction = sun.sample_direction(u);
+        (self.seen(direction) == Some(index))
+            .then(|| self.light_sample(index, direction, 1.0 / sun.solid_angle()))
+    }
+
+    /// A direction into the sky, in proportion to its brightness.
+    pub fn sample_dome(&self, u: [f64; 2]) -> Option<LightSample> {
+        let (direction, pdf) = self.dome.as_ref()?.sample(u);
+        let index = self.seen(direction)?;
+        let source = &self.sources[index];
+        let is_useful = !source.is_small() && source.emitter.illuminates();
+        is_useful.then(|| self.light_sample(index, direction, pdf))
+    }
+
+    fn light_sample(&self, index: usize, direction: Vec3, pdf: f64) -> LightSample {
+        let source = &self.sources[index];
+        LightSample {
+            direction,
+            distance: f64::INFINITY,
+            radiance: source.emitter.radiance(direction),
+            pdf,
+            solid_angle: source.solid_angle(),
+            is_direct: source.emitter.is_direct(f64::INFINITY),
+            object: None,
+            is_hidden_by_illum: source.emitter.is_hidden_by_illum(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{chi_square_of_sampler, sphere_sum};
+    use sunpeak_core::gray;
+    use sunpeak_sky::{CieSky, SkyDistribution};
+
+    fn source(direction: Vec3, angle_deg: f64, value: f64, kind: EmitterKind) -> Distant {
+        Distant {
+            direction,
+            angle_deg,
+            emitter: Emitter { radiance: gray(value), patterns: Vec::new(), kind },
+        }
+    }
+
+    fn sky_and_sun() -> DistantSources {
+        let sun = Vec3::new(0.3, -0.6, 0.74).normalize();
+        let pattern =
+            SkyDistribution::Cie { kind: CieSky::Clear, zenith: 10.0, ground: 3.0, normalization: 0.3, sun };
+        let mut sky = source(Vec3::Z, 180.0, 1.0, EmitterKind::Glow { max_radius: 0.0 });
+        sky.emitter.patterns.push(pattern);
+        let ground = source(Vec3::NEG_Z, 180.0, 2.0, EmitterKind::Glow { max_radius: 0.0 });
+        DistantSources::new(vec![sky, ground, source(sun, 0.533, 1e6, EmitterKind::Light)])
+    }
+
+    #[test]
+    fn the_sun_stands_before_the_sky() {
+        let all = sky_and_sun();
+        let sun = all.get(all.suns()[0]).direction;
+        assert_eq!(all.seen(sun), Some(all.suns()[0]));
+        assert!(all.dome_radiance(sun) == Rgb::ZERO);
+        assert!(all.seen(Vec3::Z).is_some() && all.seen(Vec3::NEG_Z).is_some());
+        assert!(all.sample_sun(all.suns()[0], [0.3, 0.4]).is_some());
+    }
+
+    #[test]
+    fn the_dome_is_sampled_as_its_density_says() {
+        let all = sky_and_sun();
+        let dome = all.dome.as_ref().expect("a dome");
+        chi_square_of_sampler("dome", |_, u| Some(dome.sample(u).0), |d| dome.pdf(d));
+    }
+
+    #[test]
+    fn dome_samples_give_its_irradiance() {
+        let all = sky_and_sun();
+        let expected = sphere_sum(|d| all.dome_radiance(d) * d.z.max(0.0));
+        let n = 1 << 14;
+        let mean = (0..n)
+            .filter_map(|i| all.sample_dome(sunpeak_core::Sampler::new(1, 0, i).next_2d()))
+            .map(|s| s.radiance * s.direction.z.max(0.0) / s.pdf / n as f64)
+            .sum::<Rgb>();
+        assert!((mean - expected).length() < 3e-3 * expected.length(), "{mean} {expected}");
+    }
+}

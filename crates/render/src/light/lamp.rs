@@ -1,0 +1,217 @@
+//! Emitting surfaces in the room.
+
+use super::LightSample;
+use super::dome::pick;
+use crate::material::Emitter;
+use crate::shapes::{Cone, Ring, Sphere, Triangle};
+use std::f64::consts::PI;
+use sunpeak_core::{Frame, Vec3};
+
+/// Where the light leaves.
+#[derive(Clone, Debug)]
+pub(crate) enum LampShape {
+    /// A polygon, in triangles.
+    Triangles { triangles: Vec<Triangle>, cumulated: Vec<f64>, normal: Vec3, area: f64 },
+    /// A sphere or bubble.
+    Sphere(Sphere),
+    /// A cone, cylinder, cup or tube.
+    Cone(Cone),
+    /// A ring.
+    Ring(Ring),
+}
+
+/// An emitting object.
+#[derive(Clone, Debug)]
+pub(crate) struct Lamp {
+    pub object: u32,
+    pub emitter: Emitter,
+    pub shape: LampShape,
+}
+
+impl LampShape {
+    /// `None` if the triangles have no area.
+    pub fn triangles(triangles: Vec<Triangle>, normal: Vec3) -> Option<Self> {
+        let area: f64 = triangles.iter().map(Triangle::area).sum();
+        let mut sum = 0.0;
+        let cumulated = triangles
+            .iter()
+            .map(|t| {
+                sum += t.area() / area;
+                sum
+            })
+            .collect();
+        (area > 0.0).then_some(Self::Triangles { triangles, cumulated, normal, area })
+    }
+
+    pub fn area(&self) -> f64 {
+        match self {
+            Self::Triangles { area, .. } => *area,
+            Self::Sphere(s) => 4.0 * PI * s.radius * s.radius,
+            Self::Cone(s) => s.area(),
+            Self::Ring(s) => s.area(),
+        }
+    }
+
+    /// Centre and radius of a sphere around it.
+    pub fn surroundings(&self) -> (Vec3, f64) {
+        let b = match self {
+            Self::Triangles { triangles, .. } => triangles
+                .iter()
+                .map(Triangle::bounds)
+                .reduce(|a, b| a.union(b))
+                .unwrap_or(crate::shapes::Bounds::EMPTY),
+            Self::Sphere(s) => return (s.center, s.radius),
+            Self::Cone(s) => s.bounds(),
+            Self::Ring(s) => s.bounds(),
+        };
+        (0.5 * (b.min + b.max), 0.5 * (b.max - b.min).length())
+    }
+
+    /// A point uniform over the area, and the normal there.
+    fn sample_area(&self, u: [f64; 2]) -> (Vec3, Vec3) {
+        match self {
+            Self::Triangles { triangles, cumulated, normal, .. } => {
+                let (i, rest) = pick(cumulated, u[0]);
+                (Triangle::sample([rest, u[1]], triangles[i].0), *normal)
+            }
+            Self::Sphere(s) => {
+                let p = s.center + sunpeak_core::warp::uniform_sphere(u) * s.radius;
+                (p, s.normal(p))
+            }
+            Self::Cone(s) => {
+                let p = s.sample(u);
+                (p, s.normal(p))
+            }
+            Self::Ring(s) => (s.sample(u), s.normal),
+        }
+    }
+}
+
+impl Lamp {
+    /// Luminous power over pi, for choosing among lamps.
+    pub fn strength(&self) -> f64 {
+        sunpeak_core::luminance(self.emitter.radiance) * self.shape.area()
+    }
+
+    /// A direction towards the lamp from `from`; `None` if its point shows its back.
+    pub fn sample(&self, from: Vec3, u: [f64; 2]) -> Option<LightSample> {
+        if let Some((direction, distance, pdf)) = self.sample_sphere(from, u) {
+            return Some(self.light_sample(direction, distance, pdf));
+        }
+        let (point, normal) = self.shape.sample_area(u);
+        let distance = point.distance(from);
+        let direction = (point - from) / distance;
+        let pdf = self.area_pdf(direction, distance, normal);
+        (pdf.is_finite() && pdf > 0.0).then(|| self.light_sample(direction, distance, pdf))
+    }
+
+    /// Density [1/sr] of `sample` for a direction that meets the lamp at this distance, where its normal is `normal`.
+    pub fn pdf(&self, from: Vec3, direction: Vec3, distance: f64, normal: Vec3) -> f64 {
+        match self.outside_cone(from) {
+            Some((_, solid_angle)) => 1.0 / solid_angle,
+            None => self.area_pdf(direction, distance, normal),
+        }
+    }
+
+    fn area_pdf(&self, direction: Vec3, distance: f64, normal: Vec3) -> f64 {
+        let cosine = -direction.dot(normal);
+        if cosine > 0.0 { distance * distance / (cosine * self.shape.area()) } else { 0.0 }
+    }
+
+    /// For a sphere seen from outside: sine squared of its angular radius, and its solid angle [sr].
+    fn outside_cone(&self, from: Vec3) -> Option<(f64, f64)> {
+        let LampShape::Sphere(Sphere { center, radius, inward: false }) = self.shape else { return None };
+        let sine2 = radius * radius / from.distance_squared(center);
+        // 1 - cos without cancellation.
+        let height = sine2 / (1.0 + (1.0 - sine2).max(0.0).sqrt());
+        (sine2 < 1.0).then_some((sine2, 2.0 * PI * height))
+    }
+
+    /// Uniform in the cone that a sphere fills (Pharr, Jakob and Humphreys 2023, section 6.2.4).
+    fn sample_sphere(&self, from: Vec3, u: [f64; 2]) -> Option<(Vec3, f64, f64)> {
+        let (_, solid_angle) = self.outside_cone(from)?;
+        let LampShape::Sphere(Sphere { center, radius, .. }) = self.shape else { return None };
+        let height = u[0] * solid_angle / (2.0 * PI);
+        let side = (height * (2.0 - height)).sqrt();
+        let (sin, cos) = (2.0 * PI * u[1]).sin_cos();
+        let axis = (center - from).normalize_or(Vec3::Z);
+        let direction = Frame::from_normal(axis).to_world(Vec3::new(side * cos, side * sin, 1.0 - height));
+        let along = (center - from).dot(direction);
+        let half_chord2 = radius * radius - (center - from).length_squared() + along * along;
+        Some((direction, along - half_chord2.max(0.0).sqrt(), 1.0 / solid_angle))
+    }
+
+    fn light_sample(&self, direction: Vec3, distance: f64, pdf: f64) -> LightSample {
+        LightSample {
+            direction,
+            distance,
+            radiance: self.emitter.radiance(direction) * self.emitter.falloff(distance),
+            pdf,
+            solid_angle: (1.0 / pdf).min(4.0 * PI),
+            is_direct: self.emitter.is_direct(distance),
+            object: Some(self.object),
+            is_hidden_by_illum: self.emitter.is_hidden_by_illum(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::EmitterKind;
+    use sunpeak_core::{Sampler, gray};
+
+    fn lamp(shape: LampShape) -> Lamp {
+        let emitter = Emitter { radiance: gray(1.0), patterns: Vec::new(), kind: EmitterKind::Light };
+        Lamp { object: 0, emitter, shape }
+    }
+
+    /// Mean of cos/pdf: the irradiance of a lamp of radiance 1 on a surface that faces up.
+    fn irradiance(lamp: &Lamp, from: Vec3) -> f64 {
+        let n = 1 << 14;
+        let one = |i| lamp.sample(from, Sampler::new(4, 0, i).next_2d());
+        (0..n).filter_map(one).map(|s| s.radiance.x * s.direction.z.max(0.0) / s.pdf).sum::<f64>() / n as f64
+    }
+
+    #[test]
+    fn lamps_light_as_closed_forms_say() {
+        // Disc and sphere centred overhead: pi sin² of the angular radius.
+        let ring = Ring {
+            center: Vec3::new(0.0, 0.0, 2.0),
+            normal: Vec3::NEG_Z,
+            inner_radius: 0.0,
+            outer_radius: 1.0,
+        };
+        let e = irradiance(&lamp(LampShape::Ring(ring)), Vec3::ZERO);
+        assert!((e - PI / 5.0).abs() < 1e-3 * PI, "{e}");
+        let sphere = Sphere { center: Vec3::new(0.0, 0.0, 2.0), radius: 1.0, inward: false };
+        let e = irradiance(&lamp(LampShape::Sphere(sphere)), Vec3::ZERO);
+        assert!((e - PI / 4.0).abs() < 1e-3 * PI, "{e}");
+        // From inside a bubble everything shines.
+        let bubble = Sphere { inward: true, ..sphere };
+        let e = irradiance(&lamp(LampShape::Sphere(bubble)), Vec3::new(0.0, 0.3, 1.8));
+        assert!((e - PI).abs() < 2e-2 * PI, "{e}");
+        // A tube around the sensor: sky factor of a ring of elevation, from the floor to 45 degrees: pi/2.
+        let tube = Cone::new(Vec3::ZERO, Vec3::Z, 1.0, 1.0, true).expect("a cone");
+        let e = irradiance(&lamp(LampShape::Cone(tube)), Vec3::ZERO);
+        assert!((e - PI / 2.0).abs() < 1e-2 * PI, "{e}");
+        // A square of side 2 at height 1: four times the corner formula (Howell, catalog B-4 in units of pi).
+        let corners = [[-1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [1.0, -1.0]].map(|[x, y]| Vec3::new(x, y, 1.0));
+        let halves = [[0, 1, 2], [0, 2, 3]].map(|t| Triangle(t.map(|i| corners[i]))).to_vec();
+        let square = LampShape::triangles(halves, Vec3::NEG_Z).expect("has an area");
+        let root = 2f64.sqrt();
+        let expected = 4.0 * (1.0 / root) * (1.0 / root).atan();
+        let e = irradiance(&lamp(square), Vec3::ZERO);
+        assert!((e - expected).abs() < 1e-2, "{e} {expected}");
+    }
+
+    #[test]
+    fn density_is_that_of_the_samples() {
+        let sphere = lamp(LampShape::Sphere(Sphere { center: Vec3::ONE, radius: 0.3, inward: false }));
+        let s = sphere.sample(Vec3::ZERO, [0.3, 0.6]).expect("a sample");
+        let p = s.direction * s.distance;
+        assert!((p.distance(Vec3::ONE) - 0.3).abs() < 1e-12);
+        let normal = (p - Vec3::ONE) / 0.3;
+        assert!((sphere.pdf(Vec3::ZERO, s.direction, s.distance, normal) / s.pdf - 1.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,107 @@
+//! A thin pane of glass (Radiance's `glass`).
+//!
+//! Reference manual, "Glass"; van Leeuwen's and Ward's formula for a pane with all internal reflections summed:
+//! with r the Fresnel reflectance of one face (for each polarisation) and d the transmissivity along the refracted path,
+//! transmittance (1-r)² d / (1 - r² d²), reflectance r (1 + (1-2r) d²) / (1 - r² d²).
+//! The pane is infinitely thin: transmitted rays go straight on.
+
+use super::{Arrival, Scattering, Smooth};
+use sunpeak_core::Rgb;
+
+/// At grazing incidence the cosine is taken to be this: a ray in the pane's plane has no Fresnel reflectance.
+const GRAZING_COSINE: f64 = 1e-9;
+
+/// A pane.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Glass {
+    /// Fraction not absorbed in one crossing at normal incidence.
+    pub transmissivity: Rgb,
+    /// Index of refraction.
+    pub index: f64,
+}
+
+/// One polarisation at one angle.
+struct Faces {
+    /// Fresnel reflectances, perpendicular and parallel.
+    reflectance: [f64; 2],
+    /// Fraction not absorbed along the refracted path.
+    crossing: Rgb,
+}
+
+impl Glass {
+    fn faces(&self, cosine: f64) -> Faces {
+        let cosine = cosine.max(GRAZING_COSINE);
+        let refracted = (1.0 - (1.0 - cosine * cosine) / (self.index * self.index)).sqrt();
+        let perpendicular = (cosine - self.index * refracted) / (cosine + self.index * refracted);
+        let parallel = (refracted - self.index * cosine) / (refracted + self.index * cosine);
+        Faces {
+            reflectance: [perpendicular * perpendicular, parallel * parallel],
+            crossing: self.transmissivity.map(|t| t.powf(1.0 / refracted)),
+        }
+    }
+
+    /// Share that goes straight on, unpolarised.
+    pub fn transmittance(&self, cosine: f64) -> Rgb {
+        let Faces { reflectance, crossing: d } = self.faces(cosine);
+        0.5 * reflectance.iter().map(|&r| (1.0 - r) * (1.0 - r) * d / (1.0 - r * r * d * d)).sum::<Rgb>()
+    }
+
+    /// Share that is mirrored, unpolarised.
+    pub fn reflectance(&self, cosine: f64) -> Rgb {
+        let Faces { reflectance, crossing } = self.faces(cosine);
+        let d2 = crossing * crossing;
+        0.5 * reflectance.iter().map(|&r| r * (1.0 + (1.0 - 2.0 * r) * d2) / (1.0 - r * r * d2)).sum::<Rgb>()
+    }
+
+    pub fn scatter(&self, arrival: &Arrival) -> Scattering<'static> {
+        let cosine = arrival.cosine();
+        Scattering {
+            straight: self.transmittance(cosine),
+            mirrored: self.reflectance(cosine),
+            refracted: None,
+            smooth: Smooth::None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sunpeak_core::gray;
+
+    #[test]
+    fn common_glass_transmits_88_percent() {
+        // Reference manual: "the transmissivity of standard 88% transmittance glass is 0.96" (rounded).
+        let glass = Glass { transmissivity: gray(0.96), index: 1.52 };
+        assert!((glass.transmittance(1.0).x - 0.88).abs() < 2e-3);
+        // The manual's formula from transmittance to transmissivity.
+        let t = 0.7f64;
+        let tn = ((0.8402528435 + 0.0072522239 * t * t).sqrt() - 0.9166530661) / 0.0036261119 / t;
+        let glass = Glass { transmissivity: gray(tn), index: 1.52 };
+        assert!((glass.transmittance(1.0).x - t).abs() < 1e-6);
+    }
+
+    #[test]
+    fn without_absorption_all_energy_is_kept() {
+        let glass = Glass { transmissivity: gray(1.0), index: 1.52 };
+        for i in 0..=20 {
+            let cosine = f64::from(i) / 20.0;
+            let sum = glass.transmittance(cosine) + glass.reflectance(cosine);
+            assert!((sum - Rgb::ONE).length() < 1e-9, "{cosine} {sum}");
+        }
+    }
+
+    #[test]
+    fn at_brewsters_angle_parallel_light_is_not_reflected() {
+        let glass = Glass { transmissivity: gray(0.9), index: 1.52 };
+        let cosine = 1.52f64.atan().cos();
+        assert!(glass.faces(cosine).reflectance[1] < 1e-20);
+    }
+
+    #[test]
+    fn black_glass_reflects_its_first_face_only() {
+        let glass = Glass { transmissivity: Rgb::ZERO, index: 1.5 };
+        assert_eq!(glass.transmittance(0.7), Rgb::ZERO);
+        assert!((glass.reflectance(1.0).x - 0.04).abs() < 1e-12);
+    }
+}

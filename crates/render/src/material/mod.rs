@@ -1,0 +1,141 @@
+//! Materials, as Radiance's reference manual defines them, compiled for rendering.
+
+mod dielectric;
+mod emitter;
+mod glass;
+mod smooth;
+mod table;
+mod ward;
+
+pub(crate) use dielectric::Dielectric;
+pub(crate) use emitter::{Emitter, EmitterKind};
+pub(crate) use glass::Glass;
+pub(crate) use smooth::{Smooth, SmoothValue};
+pub(crate) use table::Table;
+pub(crate) use ward::WardMaterial;
+
+use sunpeak_core::{Rgb, Vec3};
+
+/// Index of a compiled material.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct MaterialId(pub u32);
+
+/// What stands in for a material towards some rays; `None` is `void`: invisible.
+pub(crate) type Alternate = Option<MaterialId>;
+
+/// A material, ready to be asked.
+#[derive(Debug)]
+pub(crate) enum Material {
+    /// `plastic`, `metal`, `trans`.
+    Ward(WardMaterial),
+    /// `glass`.
+    Glass(Glass),
+    /// `dielectric`.
+    Dielectric(Dielectric),
+    /// `mirror`.
+    Mirror(Mirror),
+    /// `light`, `illum`, `glow`, `spotlight`.
+    Emitter(Emitter),
+    /// `BSDF`, `aBSDF`.
+    Table(Table),
+}
+
+/// A planar mirror: reflects at its front, its back is black.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mirror {
+    pub reflectance: Rgb,
+    /// What rays see that are not on their way from a source.
+    pub alternate: Option<Alternate>,
+}
+
+/// A point of a surface that a ray has reached.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Arrival {
+    pub point: Vec3,
+    /// Unit normal of the surface's front.
+    pub normal: Vec3,
+    /// Unit direction of the ray.
+    pub direction: Vec3,
+}
+
+impl Arrival {
+    /// Did the ray come from the front?
+    pub fn at_front(&self) -> bool {
+        self.direction.dot(self.normal) < 0.0
+    }
+
+    /// The normal on the ray's side.
+    pub fn facing_normal(&self) -> Vec3 {
+        if self.at_front() { self.normal } else { -self.normal }
+    }
+
+    /// Cosine between the ray and the normal, positive.
+    pub fn cosine(&self) -> f64 {
+        self.direction.dot(self.normal).abs()
+    }
+
+    /// Direction of the mirrored ray.
+    pub fn mirrored(&self) -> Vec3 {
+        reflect(self.direction, self.normal)
+    }
+}
+
+/// Mirror a direction at a plane.
+pub(crate) fn reflect(direction: Vec3, normal: Vec3) -> Vec3 {
+    direction - normal * (2.0 * direction.dot(normal))
+}
+
+/// What a surface does to a ray that arrives: a delta straight on, a delta mirrored, a delta refracted, and the smooth rest.
+#[derive(Debug)]
+pub(crate) struct Scattering<'w> {
+    /// Share that goes straight on.
+    pub straight: Rgb,
+    /// Share that is mirrored.
+    pub mirrored: Rgb,
+    /// Share that is refracted, and where to.
+    pub refracted: Option<(Vec3, Rgb)>,
+    /// All the rest.
+    pub smooth: Smooth<'w>,
+}
+
+impl Scattering<'_> {
+    /// Nothing comes back from the surface.
+    pub const BLACK: Scattering<'static> =
+        Scattering { straight: Rgb::ZERO, mirrored: Rgb::ZERO, refracted: None, smooth: Smooth::None };
+}
+
+impl Material {
+    /// How the material scatters a ray. `view`: the ray comes from the camera and met only mirrors and clear panes.
+    pub fn scatter(&self, arrival: &Arrival, view: bool) -> Scattering<'_> {
+        match self {
+            Self::Ward(m) => m.scatter(arrival),
+            Self::Glass(m) => m.scatter(arrival),
+            Self::Dielectric(m) => m.scatter(arrival),
+            Self::Mirror(m) if arrival.at_front() => {
+                Scattering { mirrored: m.reflectance, ..Scattering::BLACK }
+            }
+            Self::Mirror(_) | Self::Emitter(_) => Scattering::BLACK,
+            Self::Table(m) => m.scatter(arrival, view),
+        }
+    }
+
+    /// Share of a shadow ray that goes straight on. `direct`: it is on its way to a light source, not to the sky
+    /// (see [`Table::straight`]).
+    pub fn straight(&self, arrival: &Arrival, direct: bool) -> Rgb {
+        match self {
+            Self::Ward(m) => m.straight(arrival),
+            Self::Glass(m) => m.transmittance(arrival.cosine()),
+            Self::Table(m) => m.straight(arrival, direct),
+            Self::Dielectric(_) | Self::Mirror(_) | Self::Emitter(_) => Rgb::ZERO,
+        }
+    }
+
+    /// Does it let clear light through (so that a mirror's alternate hides the mirror altogether)?
+    pub fn is_transparent(&self) -> bool {
+        match self {
+            Self::Glass(_) | Self::Dielectric(_) => true,
+            Self::Ward(m) => m.is_trans(),
+            Self::Table(_) | Self::Mirror(_) | Self::Emitter(_) => false,
+        }
+    }
+}

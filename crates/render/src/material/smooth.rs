@@ -1,0 +1,118 @@
+//! The smooth part of a material at one point: what shadow rays are weighted with and directions are sampled from.
+
+use super::{table::TableLobes, ward::WardLobes};
+use std::f64::consts::FRAC_1_PI;
+use sunpeak_core::{Frame, Rgb, Sampler, Vec3, warp};
+
+/// A bidirectional value, apart for diffuse and other lobes: only diffuse scattering counts as a bounce.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SmoothValue {
+    /// Of Lambertian lobes.
+    pub diffuse: Rgb,
+    /// Of all others.
+    pub glossy: Rgb,
+}
+
+impl SmoothValue {
+    pub fn total(&self) -> Rgb {
+        self.diffuse + self.glossy
+    }
+
+    pub fn scaled(&self, by: f64) -> Self {
+        Self { diffuse: self.diffuse * by, glossy: self.glossy * by }
+    }
+}
+
+/// A direction drawn from the smooth lobes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SmoothSample {
+    /// Unit vector, world axes.
+    pub direction: Vec3,
+    /// Value times cosine over density.
+    pub weight: SmoothValue,
+    /// Density [1/sr].
+    pub pdf: f64,
+    /// What light sources that are met in this direction are multiplied with; see [`Smooth::toward_source`].
+    pub source_factor: f64,
+}
+
+/// The smooth lobes at a point.
+#[derive(Debug)]
+pub(crate) enum Smooth<'w> {
+    /// There are none.
+    None,
+    /// A receiver for irradiance: scatters all it gets with value 1, at its front.
+    Sensor(Frame),
+    /// Diffuse and Gaussian lobes.
+    Ward(WardLobes),
+    /// A table and diffuse lobes.
+    Table(TableLobes<'w>),
+}
+
+impl Smooth<'_> {
+    /// Luminous share of the incident light that these lobes scatter, roughly; zero where they do nothing.
+    pub fn albedo(&self) -> f64 {
+        match self {
+            Self::None => 0.0,
+            Self::Sensor(_) => 1.0,
+            Self::Ward(lobes) => lobes.albedo(),
+            Self::Table(lobes) => lobes.albedo(),
+        }
+    }
+
+    /// Value [1/sr] towards a direction (world axes, away from the surface).
+    pub fn evaluate(&self, direction: Vec3) -> SmoothValue {
+        match self {
+            Self::None => SmoothValue::default(),
+            Self::Sensor(frame) => {
+                let front = if direction.dot(frame.z) > 0.0 { Rgb::ONE } else { Rgb::ZERO };
+                SmoothValue { diffuse: front, glossy: Rgb::ZERO }
+            }
+            Self::Ward(lobes) => lobes.evaluate(direction),
+            Self::Table(lobes) => lobes.evaluate(direction),
+        }
+    }
+
+    /// As `evaluate`, towards a light source of this solid angle [sr]. Some materials treat light sources apart, as Radiance does.
+    pub fn toward_source(&self, direction: Vec3, solid_angle: f64) -> SmoothValue {
+        match self {
+            Self::Ward(lobes) => lobes.evaluate(direction).scaled(lobes.source_factor(direction)),
+            Self::Table(lobes) => lobes.toward_source(direction, solid_angle),
+            _ => self.evaluate(direction),
+        }
+    }
+
+    /// May sampled directions find light sources? Not where `toward_source` is a rule of its own.
+    pub fn samples_find_sources(&self) -> bool {
+        match self {
+            Self::Table(lobes) => !lobes.has_source_rule(),
+            _ => true,
+        }
+    }
+
+    /// Density [1/sr] of `sample`.
+    pub fn pdf(&self, direction: Vec3) -> f64 {
+        match self {
+            Self::None => 0.0,
+            Self::Sensor(frame) => direction.dot(frame.z).max(0.0) * FRAC_1_PI,
+            Self::Ward(lobes) => lobes.pdf(direction),
+            Self::Table(lobes) => lobes.pdf(direction),
+        }
+    }
+
+    /// Draw a direction; `None` if the draw fell where nothing is scattered.
+    pub fn sample(&self, sampler: &mut Sampler) -> Option<SmoothSample> {
+        match self {
+            Self::None => None,
+            Self::Sensor(frame) => {
+                let local = warp::cosine_hemisphere(sampler.next_2d());
+                let weight = SmoothValue { diffuse: Rgb::splat(std::f64::consts::PI), glossy: Rgb::ZERO };
+                let pdf = local.z * FRAC_1_PI;
+                let direction = frame.to_world(local);
+                (pdf > 0.0).then_some(SmoothSample { direction, weight, pdf, source_factor: 1.0 })
+            }
+            Self::Ward(lobes) => lobes.sample(sampler.next_1d(), sampler.next_2d()),
+            Self::Table(lobes) => lobes.sample(sampler.next_1d(), sampler.next_2d(), sampler.next_1d()),
+        }
+    }
+}

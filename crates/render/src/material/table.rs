@@ -1,0 +1,159 @@
+//! `BSDF` and `aBSDF`: a measured or simulated table, its through peak, and diffuse lobes beside it.
+//!
+//! With the split the table is a residual and a delta, and both shadow rays and sampled paths go straight on by the delta.
+//! The rules of Radiance and of the paper are not a decomposition: the delta is for shadow rays to light sources and for
+//! view rays only; towards light sources the table is muted around the straight direction; samples of view rays there are
+//! dropped; everybody else sees the whole table. Here they do what the reference does, its double counting included.
+
+use super::{Arrival, Scattering, Smooth, SmoothValue, smooth::SmoothSample};
+use std::{f64::consts::FRAC_1_PI, sync::Arc};
+use sunpeak_bsdf::{Bsdf, Mode, PeakRule};
+use sunpeak_core::{Frame, Rgb, Vec3, luminance, warp};
+
+/// The material.
+#[derive(Clone, Debug)]
+pub(crate) struct Table {
+    pub bsdf: Arc<Bsdf>,
+    pub rule: PeakRule,
+    /// Up vector, world axes.
+    pub up: Vec3,
+    /// Is the frame left-handed?
+    pub mirrored: bool,
+    pub front_diffuse: Rgb,
+    pub back_diffuse: Rgb,
+    pub diffuse_transmission: Rgb,
+}
+
+impl Table {
+    /// z the front normal, y up, x = y cross z, or its opposite in a mirrored instance. Where a curved surface's normal runs
+    /// along the up vector, any frame serves.
+    fn frame(&self, normal: Vec3) -> Frame {
+        let frame = Frame::from_normal_up(normal, self.up).unwrap_or_else(|| Frame::from_normal(normal));
+        if self.mirrored { Frame { x: -frame.x, ..frame } } else { frame }
+    }
+
+    pub fn is_reference_rule(&self) -> bool {
+        matches!(self.rule, PeakRule::Radiance | PeakRule::Paper)
+    }
+
+    /// Share of a shadow ray that goes straight on. By the rules of the reference only rays to light sources do: the sky
+    /// is found by sampling the table.
+    pub fn straight(&self, arrival: &Arrival, direct: bool) -> Rgb {
+        if self.rule == PeakRule::Off || (self.is_reference_rule() && !direct) {
+            return Rgb::ZERO;
+        }
+        self.bsdf.through(self.frame(arrival.normal).to_local(-arrival.direction), self.rule)
+    }
+
+    pub fn scatter(&self, arrival: &Arrival, view: bool) -> Scattering<'_> {
+        let frame = self.frame(arrival.normal);
+        let w_in = frame.to_local(-arrival.direction);
+        let goes_straight = self.rule == PeakRule::Split || (self.is_reference_rule() && view);
+        let straight = if goes_straight { self.bsdf.through(w_in, self.rule) } else { Rgb::ZERO };
+        let hemispherical = |mode| self.bsdf.hemispherical_smooth(w_in, mode, self.rule);
+        let lobes = TableLobes {
+            table: self,
+            frame,
+            w_in,
+            view,
+            diffuse_reflection: if arrival.at_front() { self.front_diffuse } else { self.back_diffuse },
+            table_weight: luminance(hemispherical(Mode::Reflection) + hemispherical(Mode::Transmission)),
+        };
+        let smooth = if lobes.albedo() > 0.0 { Smooth::Table(lobes) } else { Smooth::None };
+        Scattering { straight, mirrored: Rgb::ZERO, refracted: None, smooth }
+    }
+}
+
+/// The smooth lobes at one point, z along the front normal.
+#[derive(Clone, Debug)]
+pub(crate) struct TableLobes<'w> {
+    table: &'w Table,
+    frame: Frame,
+    w_in: Vec3,
+    view: bool,
+    diffuse_reflection: Rgb,
+    /// Luminous share that the table scatters.
+    table_weight: f64,
+}
+
+impl TableLobes<'_> {
+    /// Luminous weights: diffuse reflection, diffuse transmission, table.
+    fn weights(&self) -> [f64; 3] {
+        [luminance(self.diffuse_reflection), luminance(self.table.diffuse_transmission), self.table_weight]
+    }
+
+    pub fn albedo(&self) -> f64 {
+        self.weights().iter().sum()
+    }
+
+    pub fn has_source_rule(&self) -> bool {
+        self.table.is_reference_rule()
+    }
+
+    fn diffuse(&self, w_out: Vec3) -> Rgb {
+        let is_reflection = w_out.z * self.w_in.z > 0.0;
+        let share = if is_reflection { self.diffuse_reflection } else { self.table.diffuse_transmission };
+        share * FRAC_1_PI
+    }
+
+    pub fn evaluate(&self, direction: Vec3) -> SmoothValue {
+        let w_out = self.frame.to_local(direction);
+        let glossy = if self.is_muted(w_out) {
+            Rgb::ZERO
+        } else {
+            self.table.bsdf.evaluate_smooth(self.w_in, w_out, self.table.rule)
+        };
+        SmoothValue { diffuse: self.diffuse(w_out), glossy }
+    }
+
+    /// By the rules of the reference, view rays that go straight on do not see the table around there as well.
+    fn is_muted(&self, w_out: Vec3) -> bool {
+        self.view
+            && self.has_source_rule()
+            && self.table.bsdf.is_muted_for_view(self.w_in, w_out, self.table.rule)
+    }
+
+    pub fn toward_source(&self, direction: Vec3, solid_angle: f64) -> SmoothValue {
+        if !self.has_source_rule() {
+            return self.evaluate(direction);
+        }
+        let w_out = self.frame.to_local(direction);
+        let glossy = self.table.bsdf.evaluate_to_source(self.w_in, w_out, solid_angle, self.table.rule);
+        SmoothValue { diffuse: self.diffuse(w_out), glossy }
+    }
+
+    pub fn pdf(&self, direction: Vec3) -> f64 {
+        let w_out = self.frame.to_local(direction);
+        let [reflect, transmit, table] = self.weights();
+        let diffuse = if w_out.z * self.w_in.z > 0.0 { reflect } else { transmit };
+        let table_pdf = if table > 0.0 {
+            table * self.table.bsdf.pdf_smooth(self.w_in, w_out, self.table.rule)
+        } else {
+            0.0
+        };
+        (diffuse * w_out.z.abs() * FRAC_1_PI + table_pdf) / self.albedo()
+    }
+
+    pub fn sample(&self, choice: f64, u: [f64; 2], v: f64) -> Option<SmoothSample> {
+        let [reflect, transmit, _] = self.weights();
+        let choice = choice * self.albedo();
+        let towards = |sign: f64| warp::cosine_hemisphere(u) * Vec3::new(1.0, 1.0, sign);
+        let side = self.w_in.z.signum();
+        let w_out = if choice < reflect {
+            towards(side)
+        } else if choice < reflect + transmit {
+            towards(-side)
+        } else {
+            self.sample_table([u[0], u[1], v])?
+        };
+        let direction = self.frame.to_world(w_out);
+        let pdf = self.pdf(direction);
+        let weight = self.evaluate(direction).scaled(w_out.z.abs() / pdf);
+        let source_factor = if self.has_source_rule() { 0.0 } else { 1.0 };
+        (pdf > 0.0).then_some(SmoothSample { direction, weight, pdf, source_factor })
+    }
+
+    fn sample_table(&self, u: [f64; 3]) -> Option<Vec3> {
+        self.table.bsdf.sample_smooth(self.w_in, u, self.table.rule).map(|sample| sample.w_out)
+    }
+}

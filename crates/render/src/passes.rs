@@ -1,0 +1,172 @@
+//! Many means at once, pass after pass: pixels, rays or sensors, on all cores.
+//!
+//! Each item adds its own samples in order, so the result does not depend on threads.
+
+use crate::{DEFAULT_SAMPLES, RenderOptions};
+use rayon::prelude::*;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+use sunpeak_core::{Control, Error, Result, Rgb};
+
+/// Items that a thread takes at once.
+const CHUNK: usize = 64;
+
+/// Longest pass [samples per item].
+const LONGEST_PASS: u32 = 16;
+
+/// Units of progress where the goal is a time [1/s].
+const UNITS_PER_SECOND: f64 = 100.0;
+
+/// The means, and the number of samples behind each.
+pub(crate) struct Means {
+    pub values: Vec<Rgb>,
+    pub samples: u32,
+}
+
+/// Estimate `items` values; `sample(item, index)` is one estimate of one of them.
+pub(crate) fn estimate(
+    items: usize,
+    options: &RenderOptions,
+    control: &Control,
+    sample: impl Fn(usize, u64) -> Rgb + Sync,
+) -> Result<Means> {
+    let goal = Goal::new(items, options)?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(options.threads.unwrap_or(0))
+        .build()
+        .map_err(|e| Error::value(format!("cannot start {:?} threads: {e}", options.threads)))?;
+    goal.announce(control);
+    pool.install(|| run(items, &goal, control, &sample))
+}
+
+fn run(
+    items: usize,
+    goal: &Goal,
+    control: &Control,
+    sample: &(impl Fn(usize, u64) -> Rgb + Sync),
+) -> Result<Means> {
+    let mut sums = vec![Rgb::ZERO; items];
+    let mut done = 0;
+    while let Some(pass) = goal.next_pass(done) {
+        sums.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, sums)| {
+            if control.is_stopped() {
+                return;
+            }
+            for (i, sum) in sums.iter_mut().enumerate() {
+                *sum += (done..done + pass).map(|s| sample(chunk * CHUNK + i, u64::from(s))).sum::<Rgb>();
+            }
+            goal.report(control, sums.len() as u64 * u64::from(pass));
+        });
+        control.check()?;
+        done += pass;
+    }
+    let values = sums.into_iter().map(|sum| sum / f64::from(done)).collect();
+    Ok(Means { values, samples: done })
+}
+
+/// When to stop.
+struct Goal {
+    items: u64,
+    samples: u32,
+    time: Option<Duration>,
+    start: Instant,
+    /// Units of progress reported so far, where the goal is a time.
+    reported: Mutex<u64>,
+}
+
+impl Goal {
+    fn new(items: usize, options: &RenderOptions) -> Result<Self> {
+        if options.samples == Some(0) {
+            return Err(Error::value("the number of samples is 0; it must be at least 1"));
+        }
+        if options.threads == Some(0) {
+            return Err(Error::value("the number of threads is 0; leave it out for all cores"));
+        }
+        let time = match options.time_s {
+            None => None,
+            Some(s) => {
+                Some(Duration::try_from_secs_f64(s).map_err(|_| Error::value(format!("the time is {s} s")))?)
+            }
+        };
+        let unlimited = if time.is_some() { u32::MAX } else { DEFAULT_SAMPLES };
+        let samples = options.samples.unwrap_or(unlimited);
+        Ok(Self { items: items as u64, samples, time, start: Instant::now(), reported: Mutex::new(0) })
+    }
+
+    fn announce(&self, control: &Control) {
+        control.set_total(match self.time {
+            Some(time) => (time.as_secs_f64() * UNITS_PER_SECOND) as u64,
+            None => self.items * u64::from(self.samples),
+        });
+    }
+
+    fn report(&self, control: &Control, samples: u64) {
+        let Some(time) = self.time else { return control.advance(samples) };
+        let elapsed = (self.start.elapsed().min(time).as_secs_f64() * UNITS_PER_SECOND) as u64;
+        if let Ok(mut reported) = self.reported.lock() {
+            control.advance(elapsed.saturating_sub(*reported));
+            *reported = elapsed.max(*reported);
+        }
+    }
+
+    /// Samples of the next pass: as many as there are already, so that totals are powers of two while they are small.
+    fn next_pass(&self, done: u32) -> Option<u32> {
+        let wanted = done.clamp(1, LONGEST_PASS).min(self.samples - done);
+        let Some(time) = self.time.filter(|_| done > 0) else { return (wanted > 0).then_some(wanted) };
+        let elapsed = self.start.elapsed();
+        let per_sample = elapsed / done;
+        let fits = |pass: u32| elapsed + per_sample * pass <= time;
+        let mut pass = wanted;
+        while pass > 1 && !fits(pass) {
+            pass /= 2;
+        }
+        (pass > 0 && fits(pass)).then_some(pass)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_and_means_are_right_on_any_number_of_threads() {
+        let one = |threads| {
+            let options = RenderOptions { samples: Some(37), threads: Some(threads), ..Default::default() };
+            let control = Control::new();
+            let means = estimate(1000, &options, &control, |i, s| Rgb::splat(i as f64 + (s as f64).sqrt()))
+                .expect("runs");
+            assert_eq!((means.samples, control.progress()), (37, (37_000, 37_000)));
+            means.values
+        };
+        let values = one(1);
+        assert_eq!(values, one(3));
+        let mean: f64 = (0..37).map(|s| f64::from(s).sqrt()).sum::<f64>() / 37.0;
+        assert!((values[10].x - 10.0 - mean).abs() < 1e-12);
+    }
+
+    #[test]
+    fn time_is_kept_and_a_stop_is_heard() {
+        let options = RenderOptions { time_s: Some(0.2), threads: Some(1), ..Default::default() };
+        let start = Instant::now();
+        let slow = |_, _| {
+            std::thread::sleep(Duration::from_millis(1));
+            Rgb::ONE
+        };
+        let means = estimate(5, &options, &Control::new(), slow).expect("runs");
+        assert!(means.samples >= 8 && start.elapsed().as_secs_f64() < 0.4);
+        let control = Control::new();
+        control.stop();
+        assert!(matches!(estimate(5, &RenderOptions::default(), &control, slow), Err(Error::Interrupted)));
+    }
+
+    #[test]
+    fn senseless_options_are_refused() {
+        for options in [
+            RenderOptions { samples: Some(0), ..Default::default() },
+            RenderOptions { threads: Some(0), ..Default::default() },
+            RenderOptions { time_s: Some(f64::NAN), ..Default::default() },
+        ] {
+            assert!(estimate(1, &options, &Control::new(), |_, _| Rgb::ONE).is_err());
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! Single rays and irradiance sensors, as `rtrace` and `rtrace -I`.
+
+use crate::integrator::{Integrator, Limits};
+use crate::passes::estimate;
+use crate::shapes::Ray;
+use crate::{RenderOptions, World};
+use sunpeak_core::{Control, Error, Result, Rgb, Sampler, Vec3};
+
+/// Radiance [W sr⁻¹ m⁻²] along rays, each given by origin and direction (of any length).
+///
+/// # Errors
+/// A ray that is not finite or has no direction, options out of their domain, or an interruption by `control`.
+pub fn trace_radiance(
+    world: &World,
+    rays: &[(Vec3, Vec3)],
+    options: &RenderOptions,
+    control: &Control,
+) -> Result<Vec<Rgb>> {
+    let rays = checked(rays, "ray", "direction")?;
+    let integrator = Integrator { world, limits: Limits::of(options), exact_suns: None };
+    let sample = |item: usize, index| {
+        let (origin, direction) = rays[item];
+        let mut sampler = Sampler::new(options.seed, item as u64, index);
+        integrator.radiance(Ray { origin, direction }, f64::INFINITY, &mut sampler)
+    };
+    Ok(estimate(rays.len(), options, control, sample)?.values)
+}
+
+/// Irradiance [W m⁻²] at sensors, each given by a point and a normal (of any length).
+///
+/// # Errors
+/// A sensor that is not finite or has no normal, options out of their domain, or an interruption by `control`.
+pub fn trace_irradiance(
+    world: &World,
+    sensors: &[(Vec3, Vec3)],
+    options: &RenderOptions,
+    control: &Control,
+) -> Result<Vec<Rgb>> {
+    let sensors = checked(sensors, "sensor", "normal")?;
+    let integrator = Integrator { world, limits: Limits::of(options), exact_suns: None };
+    let sample = |item: usize, index| {
+        let (point, normal) = sensors[item];
+        integrator.irradiance(point, normal, &mut Sampler::new(options.seed, item as u64, index))
+    };
+    Ok(estimate(sensors.len(), options, control, sample)?.values)
+}
+
+/// Finite points and unit vectors.
+fn checked(pairs: &[(Vec3, Vec3)], what: &str, vector: &str) -> Result<Vec<(Vec3, Vec3)>> {
+    let check = |(i, &(point, along)): (usize, &(Vec3, Vec3))| match along.try_normalize() {
+        Some(unit) if point.is_finite() && along.is_finite() => Ok((point, unit)),
+        _ => Err(Error::value(format!(
+            "{what} {i} at {point} has {vector} {along}: not a place and a {vector}"
+        ))),
+    };
+    pairs.iter().enumerate().map(check).collect()
+}

@@ -1,0 +1,128 @@
+//! Triangles, without leaks between neighbours.
+//!
+//! Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection", Journal of Computer Graphics Techniques 2 (1).
+//! Edges belong to both their triangles, so a closest hit never slips through a seam.
+
+use super::{Bounds, Ray};
+use sunpeak_core::Vec3;
+
+/// Three corners; the front is where they turn counter-clockwise.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Triangle(pub [Vec3; 3]);
+
+/// A ray in the coordinates in which it runs along +z: axes permuted so that z is its largest component, then sheared.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ShearedRay {
+    origin: Vec3,
+    axes: [usize; 3],
+    shear: Vec3,
+}
+
+impl ShearedRay {
+    pub fn new(ray: &Ray) -> Self {
+        let size = ray.direction.abs();
+        let z = if size.x > size.y && size.x > size.z {
+            0
+        } else if size.y > size.z {
+            1
+        } else {
+            2
+        };
+        let axes = [(z + 1) % 3, (z + 2) % 3, z];
+        let d = ray.direction;
+        let shear = Vec3::new(d[axes[0]] / d[z], d[axes[1]] / d[z], 1.0 / d[z]);
+        Self { origin: ray.origin, axes, shear }
+    }
+
+    /// The point relative to the ray: x, y sheared, z not yet scaled.
+    #[inline(always)]
+    fn place(&self, point: Vec3) -> Vec3 {
+        let p = point - self.origin;
+        let [x, y, z] = self.axes.map(|axis| p[axis]);
+        Vec3::new(x - self.shear.x * z, y - self.shear.y * z, z)
+    }
+}
+
+impl Triangle {
+    /// Distance at which the ray crosses the triangle, from either side; infinity if it does not.
+    #[inline(always)]
+    pub fn crossing(&self, ray: &ShearedRay) -> f64 {
+        let [a, b, c] = self.0.map(|v| ray.place(v));
+        let (u, v, w) = (c.x * b.y - c.y * b.x, a.x * c.y - a.y * c.x, b.x * a.y - b.y * a.x);
+        if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
+            return f64::INFINITY;
+        }
+        let determinant = u + v + w;
+        if determinant == 0.0 {
+            return f64::INFINITY;
+        }
+        (u * a.z + v * b.z + w * c.z) * ray.shear.z / determinant
+    }
+
+    pub fn area(&self) -> f64 {
+        self.area_vector().length()
+    }
+
+    /// Normal times area.
+    pub fn area_vector(&self) -> Vec3 {
+        let [a, b, c] = self.0;
+        0.5 * (b - a).cross(c - a)
+    }
+
+    /// A uniformly distributed point (Heitz 2019, "A Low-Distortion Map Between Triangle and Square").
+    pub fn sample([u, v]: [f64; 2], [a, b, c]: [Vec3; 3]) -> Vec3 {
+        let (s, t) = if v > u { (0.5 * u, v - 0.5 * u) } else { (u - 0.5 * v, 0.5 * v) };
+        a + (b - a) * s + (c - a) * t
+    }
+
+    pub fn bounds(&self) -> Bounds {
+        Bounds::of_points(self.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sunpeak_core::{Sampler, warp};
+
+    fn ray(origin: Vec3, direction: Vec3) -> ShearedRay {
+        ShearedRay::new(&Ray { origin, direction: direction.normalize() })
+    }
+
+    #[test]
+    fn distance_is_that_to_the_plane() {
+        let t = Triangle([Vec3::new(0.0, 0.0, 2.0), Vec3::new(1.0, 0.0, 2.0), Vec3::new(0.0, 1.0, 2.0)]);
+        for (x, y) in [(0.2, 0.3), (0.0, 0.0), (0.5, 0.5)] {
+            assert!((t.crossing(&ray(Vec3::new(x, y, 0.0), Vec3::Z)) - 2.0).abs() < 1e-15);
+            assert!((t.crossing(&ray(Vec3::new(x, y, 5.0), Vec3::NEG_Z)) - 3.0).abs() < 1e-15);
+        }
+        assert!(t.crossing(&ray(Vec3::new(0.6, 0.6, 0.0), Vec3::Z)).is_infinite());
+        assert!(t.crossing(&ray(Vec3::new(0.2, 0.2, 0.0), Vec3::X)).is_infinite());
+    }
+
+    #[test]
+    fn nothing_slips_between_neighbours() {
+        // A fan around a vertex; rays are aimed at the shared edges and at the vertex itself.
+        let rim: Vec<Vec3> =
+            (0..7).map(|i| Vec3::new((i as f64).cos(), (i as f64).sin(), 0.1 * i as f64)).collect();
+        let hub = Vec3::new(0.1, 0.05, 0.3);
+        let fan: Vec<Triangle> = (0..7).map(|i| Triangle([hub, rim[i], rim[(i + 1) % 7]])).collect();
+        let mut sampler = Sampler::new(1, 2, 3);
+        for k in 0..2000 {
+            let origin = Vec3::new(0.0, 0.0, 4.0) + 0.5 * warp::uniform_sphere(sampler.next_2d());
+            let target = hub + (rim[k % 7] - hub) * (sampler.next_1d() * 0.999);
+            let r = ray(origin, target - origin);
+            assert!(fan.iter().any(|t| t.crossing(&r).is_finite()), "leak at {target}");
+        }
+    }
+
+    #[test]
+    fn samples_are_uniform() {
+        let corners = [Vec3::ZERO, Vec3::new(2.0, 0.0, 0.0), Vec3::new(0.0, 3.0, 1.0)];
+        let n = 4096;
+        let mean: Vec3 =
+            (0..n).map(|i| Triangle::sample(Sampler::new(5, 0, i).next_2d(), corners)).sum::<Vec3>()
+                / n as f64;
+        assert!((mean - (corners[0] + corners[1] + corners[2]) / 3.0).length() < 1e-3, "{mean}");
+    }
+}

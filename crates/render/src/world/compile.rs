@@ -1,0 +1,340 @@
+//! From what the scene files say to what the renderer asks.
+
+use super::{Facing, Object, World};
+use crate::WorldOptions;
+use crate::accel::{Accel, Geometry, Primitive};
+use crate::light::{Distant, DistantSources, Lamp, LampShape, Lamps};
+use crate::material::{
+    Alternate, Dielectric, Emitter, EmitterKind, Glass, Material, MaterialId, Mirror, Table, WardMaterial,
+};
+use crate::shapes::{Analytic, Cone, Polygon, Ring, Sphere, Triangle};
+use std::{collections::HashMap, path::Path, sync::Arc};
+use sunpeak_bsdf::{Bsdf, PeakRule};
+use sunpeak_core::{Error, Frame, Location, Result, Vec3};
+use sunpeak_scene::{
+    BsdfMaterial, Material as Said, ModifierId, ModifierKind, Pattern, Scene, Shape, Surface,
+};
+use sunpeak_sky::SkyDistribution;
+
+/// Modifiers may name each other this deep; more is a circle.
+const MAX_MODIFIER_DEPTH: usize = 100;
+
+/// Thickness up to this is none [m] (Radiance, `FTINY`).
+const NO_THICKNESS: f64 = 1e-6;
+
+pub(super) fn compile(scene: &Scene, options: &WorldOptions) -> Result<World> {
+    let mut compiler = Compiler::new(scene, options);
+    for surface in &scene.surfaces {
+        compiler.add(surface)?;
+    }
+    compiler.finish()
+}
+
+struct Compiler<'s> {
+    scene: &'s Scene,
+    options: &'s WorldOptions,
+    bsdfs: HashMap<&'s Path, Arc<Bsdf>>,
+    materials: Vec<Material>,
+    compiled: HashMap<ModifierId, Alternate>,
+    objects: Vec<Object>,
+    primitives: Vec<Primitive>,
+    analytic: Vec<Analytic>,
+    sources: Vec<Distant>,
+    lamps: Vec<Lamp>,
+    mirrors: Vec<u32>,
+}
+
+impl<'s> Compiler<'s> {
+    fn new(scene: &'s Scene, options: &'s WorldOptions) -> Self {
+        Self {
+            scene,
+            options,
+            bsdfs: options.loaded.iter().map(|(path, bsdf)| (path.as_path(), bsdf.clone())).collect(),
+            materials: Vec::new(),
+            compiled: HashMap::new(),
+            objects: Vec::new(),
+            primitives: Vec::new(),
+            analytic: Vec::new(),
+            sources: Vec::new(),
+            lamps: Vec::new(),
+            mirrors: Vec::new(),
+        }
+    }
+
+    fn finish(self) -> Result<World> {
+        Ok(World {
+            accel: Accel::build(self.primitives, self.analytic)?,
+            objects: self.objects,
+            materials: self.materials,
+            distant: DistantSources::new(self.sources),
+            lamps: Lamps::new(self.lamps),
+            mirrors: self.mirrors,
+            rule: self.options.peak,
+        })
+    }
+
+    fn add(&mut self, surface: &'s Surface) -> Result<()> {
+        let Some(modifier) = surface.modifier else { return Ok(()) };
+        let Some(material) = self.material(modifier, &surface.location, 0)? else { return Ok(()) };
+        match &surface.shape {
+            Shape::Source { direction, angle_deg } => self.add_source(material, *direction, *angle_deg),
+            Shape::Polygon(vertices) => self.add_polygon(surface, material, vertices)?,
+            &Shape::Sphere { center, radius, inward } => {
+                let sphere = Sphere { center, radius, inward };
+                self.add_analytic(surface, material, Analytic::Sphere(sphere), LampShape::Sphere(sphere))?;
+            }
+            &Shape::Cone { start, end, start_radius, end_radius, inward } => {
+                if let Some(cone) = Cone::new(start, end, start_radius, end_radius, inward) {
+                    self.add_analytic(surface, material, Analytic::Cone(cone), LampShape::Cone(cone))?;
+                }
+            }
+            &Shape::Ring { center, normal, inner_radius, outer_radius } => {
+                let ring = Ring { center, normal, inner_radius, outer_radius };
+                self.add_analytic(surface, material, Analytic::Ring(ring), LampShape::Ring(ring))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Only emitters shine from infinity; any other material of a `source` is nothing, as in Radiance.
+    fn add_source(&mut self, material: MaterialId, direction: Vec3, angle_deg: f64) {
+        if let Material::Emitter(emitter) = &self.materials[material.0 as usize] {
+            self.sources.push(Distant { direction, angle_deg, emitter: emitter.clone() });
+        }
+    }
+
+    fn add_polygon(&mut self, surface: &Surface, material: MaterialId, vertices: &[Vec3]) -> Result<()> {
+        if vertices.iter().any(|v| !v.is_finite()) {
+            return Err(Error::input(surface.location.clone(), "a vertex is not a finite number"));
+        }
+        // A polygon without area is nothing, as in Radiance.
+        let Some(polygon) = Polygon::new(vertices.to_vec()) else { return Ok(()) };
+        let normal = polygon.normal;
+        let object = self.add_object(surface, material, Facing::Flat(normal))?;
+        match polygon.triangulate() {
+            Some(triangles) => {
+                self.add_lamp(object, material, LampShape::triangles(triangles.clone(), normal));
+                let piece = |t: Triangle| Primitive { geometry: Geometry::Triangle(t), object };
+                self.primitives.extend(triangles.into_iter().map(piece));
+            }
+            None => self.add_primitive(object, Analytic::Polygon(polygon)),
+        }
+        Ok(())
+    }
+
+    fn add_analytic(
+        &mut self,
+        surface: &Surface,
+        material: MaterialId,
+        shape: Analytic,
+        lamp: LampShape,
+    ) -> Result<()> {
+        let bounds = shape.bounds();
+        if !(bounds.min.is_finite() && bounds.max.is_finite()) {
+            return Err(Error::input(
+                surface.location.clone(),
+                "a coordinate or radius is not a finite number",
+            ));
+        }
+        let facing = match &shape {
+            Analytic::Ring(ring) => Facing::Flat(ring.normal),
+            _ => Facing::Curved(self.analytic.len() as u32),
+        };
+        let object = self.add_object(surface, material, facing)?;
+        self.add_lamp(object, material, Some(lamp));
+        self.add_primitive(object, shape);
+        Ok(())
+    }
+
+    fn add_primitive(&mut self, object: u32, shape: Analytic) {
+        self.primitives.push(Primitive { geometry: Geometry::Analytic(self.analytic.len() as u32), object });
+        self.analytic.push(shape);
+    }
+
+    fn add_object(&mut self, surface: &Surface, material: MaterialId, facing: Facing) -> Result<u32> {
+        let object = self.objects.len() as u32;
+        match (&self.materials[material.0 as usize], facing) {
+            (Material::Table(table), Facing::Flat(normal))
+                if Frame::from_normal_up(normal, table.up).is_none() =>
+            {
+                let message = format!(
+                    "the BSDF's up vector {} runs along the surface's normal; give one across",
+                    table.up
+                );
+                return Err(Error::input(surface.location.clone(), message));
+            }
+            (Material::Mirror(_), Facing::Flat(_)) => self.mirrors.push(object),
+            _ => {}
+        }
+        self.objects.push(Object { material, facing, lamp: None });
+        Ok(object)
+    }
+
+    fn add_lamp(&mut self, object: u32, material: MaterialId, shape: Option<LampShape>) {
+        let (Material::Emitter(emitter), Some(shape)) = (&self.materials[material.0 as usize], shape) else {
+            return;
+        };
+        if emitter.illuminates() {
+            self.objects[object as usize].lamp = Some(self.lamps.len() as u32);
+            self.lamps.push(Lamp { object, emitter: emitter.clone(), shape });
+        }
+    }
+
+    /// The material that a modifier comes down to; `None` if the chain ends in `void` without one.
+    fn material(&mut self, id: ModifierId, user: &Location, depth: usize) -> Result<Alternate> {
+        if let Some(&done) = self.compiled.get(&id) {
+            return Ok(done);
+        }
+        if depth > MAX_MODIFIER_DEPTH {
+            return Err(Error::input(user.clone(), "the modifiers of this surface go round in a circle"));
+        }
+        let compiled = self.compile_chain(id, user, depth)?;
+        self.compiled.insert(id, compiled);
+        Ok(compiled)
+    }
+
+    /// Patterns before and behind the first material of the chain all multiply it.
+    fn compile_chain(&mut self, id: ModifierId, user: &Location, depth: usize) -> Result<Alternate> {
+        let mut patterns = Vec::new();
+        let mut said: Option<(&'s Said, &'s Location)> = None;
+        let mut next = Some(id);
+        let mut steps = 0;
+        while let Some(id) = next {
+            let Some(modifier) = self.scene.modifiers.get(id.0).filter(|_| steps <= MAX_MODIFIER_DEPTH)
+            else {
+                return Err(Error::input(user.clone(), "the modifiers of this surface do not end in void"));
+            };
+            steps += 1;
+            match &modifier.kind {
+                ModifierKind::Pattern(Pattern::Sky(sky)) => patterns.push(*sky),
+                ModifierKind::Material(material) if said.is_none() => {
+                    said = Some((material, &modifier.location))
+                }
+                ModifierKind::Material(_) => {
+                    let message = format!(
+                        "material \"{}\" modifies another material; only patterns can",
+                        modifier.name
+                    );
+                    return Err(Error::input(modifier.location.clone(), message));
+                }
+            }
+            next = modifier.parent;
+        }
+        let Some((said, location)) = said else { return Ok(None) };
+        let material = self.compile_material(said, patterns, location, depth)?;
+        self.materials.push(material);
+        Ok(Some(MaterialId(self.materials.len() as u32 - 1)))
+    }
+
+    fn compile_material(
+        &mut self,
+        said: &'s Said,
+        patterns: Vec<SkyDistribution>,
+        location: &Location,
+        depth: usize,
+    ) -> Result<Material> {
+        if let Some(emitter) = self.compile_emitter(said, &patterns, location, depth)? {
+            return Ok(Material::Emitter(emitter));
+        }
+        if !patterns.is_empty() {
+            let message =
+                "a sky pattern on a material that does not shine is not supported; put it on a glow or light";
+            return Err(Error::input(location.clone(), message));
+        }
+        Ok(match said {
+            Said::Plastic(ward) => Material::Ward(WardMaterial::opaque(ward, false)),
+            Said::Metal(ward) => Material::Ward(WardMaterial::opaque(ward, true)),
+            Said::Trans { ward, transmissivity, specular_transmission } => {
+                Material::Ward(WardMaterial::trans(ward, *transmissivity, *specular_transmission))
+            }
+            &Said::Glass { transmissivity, index } => {
+                Material::Glass(Glass { transmissivity, index: checked_index(index, location)? })
+            }
+            &Said::Dielectric { transmission, index, hartmann } => {
+                Material::Dielectric(Dielectric::new(transmission, checked_index(index, location)?, hartmann))
+            }
+            Said::Mirror { reflectance, alternate } => {
+                let alternate = match alternate {
+                    None => None,
+                    Some(named) => Some(self.alternate(*named, location, depth)?),
+                };
+                Material::Mirror(Mirror { reflectance: *reflectance, alternate })
+            }
+            Said::Bsdf(bsdf) => Material::Table(self.compile_table(bsdf, location)?),
+            Said::Light(_) | Said::Illum { .. } | Said::Glow { .. } | Said::Spotlight { .. } => {
+                return Err(Error::input(location.clone(), "an emitter that is none"));
+            }
+        })
+    }
+
+    fn compile_emitter(
+        &mut self,
+        said: &Said,
+        patterns: &[SkyDistribution],
+        location: &Location,
+        depth: usize,
+    ) -> Result<Option<Emitter>> {
+        let (radiance, kind) = match said {
+            Said::Light(radiance) => (*radiance, EmitterKind::Light),
+            Said::Illum { radiance, alternate } => {
+                let alternate = self.alternate(alternate.flatten(), location, depth)?;
+                (*radiance, EmitterKind::Illum { alternate })
+            }
+            &Said::Glow { radiance, max_radius } => (radiance, EmitterKind::Glow { max_radius }),
+            Said::Spotlight { radiance, angle_deg, axis } => {
+                let Some(unit) = axis.try_normalize() else {
+                    return Err(Error::input(location.clone(), "the spotlight's axis has no direction"));
+                };
+                let edge_cosine = (0.5 * angle_deg.to_radians()).cos();
+                (*radiance, EmitterKind::Spotlight { axis: unit, edge_cosine, focal_length: axis.length() })
+            }
+            _ => return Ok(None),
+        };
+        Ok(Some(Emitter { radiance, patterns: patterns.to_vec(), kind }))
+    }
+
+    fn alternate(
+        &mut self,
+        named: Option<ModifierId>,
+        location: &Location,
+        depth: usize,
+    ) -> Result<Alternate> {
+        named.map_or(Ok(None), |id| self.material(id, location, depth + 1))
+    }
+
+    fn compile_table(&mut self, said: &'s BsdfMaterial, location: &Location) -> Result<Table> {
+        if said.thickness.abs() > NO_THICKNESS {
+            let message = format!(
+                "BSDF with thickness {}: proxy geometry is not supported yet; use thickness 0 or aBSDF",
+                said.thickness
+            );
+            return Err(Error::input(location.clone(), message));
+        }
+        Ok(Table {
+            bsdf: self.bsdf(&said.file)?,
+            rule: if said.extract_peak { self.options.peak } else { PeakRule::Off },
+            up: said.up,
+            mirrored: said.mirrored,
+            front_diffuse: said.front_diffuse,
+            back_diffuse: said.back_diffuse,
+            diffuse_transmission: said.diffuse_transmission,
+        })
+    }
+
+    /// Each file is read once.
+    fn bsdf(&mut self, file: &'s Path) -> Result<Arc<Bsdf>> {
+        if let Some(bsdf) = self.bsdfs.get(file) {
+            return Ok(bsdf.clone());
+        }
+        let bsdf = Arc::new(Bsdf::load(file)?);
+        self.bsdfs.insert(file, bsdf.clone());
+        Ok(bsdf)
+    }
+}
+
+fn checked_index(index: f64, location: &Location) -> Result<f64> {
+    if index >= 1.0 {
+        return Ok(index);
+    }
+    Err(Error::input(location.clone(), format!("the index of refraction is {index}; it must be at least 1")))
+}
