@@ -9,7 +9,6 @@ use crate::{
 };
 use glam::DVec2;
 use std::{
-    f64::consts::PI,
     path::Path,
     sync::{Arc, OnceLock},
 };
@@ -330,6 +329,3 @@ fn chromaticity(luminous: &Table, u: &Table, v: &Table) -> Option<[Vec<f32>; 2]>
     };
     Some([from(|u, v| 9.0 * u / (4.0 * v)), from(|u, v| (12.0 - 3.0 * u - 20.0 * v) / (4.0 * v))])
 }
-
-/// Largest hemispherical value of an ideal diffuser's BTDF times pi.
-pub(crate) const LAMBERTIAN: f64 = 1.0 / PI;

@@ -5,6 +5,7 @@ use crate::{
     table::{Columns, Table},
 };
 use glam::{DVec2, DVec3};
+use std::f64::consts::PI;
 use sunpeak_core::{Rgb, gray, xyz_to_rgb};
 
 /// A table with colour and, for transmission, its split.
@@ -15,13 +16,17 @@ pub struct Distribution {
     color: Option<[Vec<f32>; 2]>,
     columns: Columns,
     split: Split,
+    smallest_projected_solid_angle: f64,
+    diffuse: f64,
 }
 
 impl Distribution {
     /// Without a peak (reflection).
     pub fn new(luminous: Table, color: Option<[Vec<f32>; 2]>) -> Self {
         let columns = luminous.columns();
-        Self { luminous, color, columns, split: Split::none() }
+        let smallest_projected_solid_angle = luminous.smallest_projected_solid_angle();
+        let diffuse = diffuse(&luminous);
+        Self { luminous, color, columns, split: Split::none(), smallest_projected_solid_angle, diffuse }
     }
 
     /// With its through peak split off (transmission).
@@ -51,6 +56,17 @@ impl Distribution {
         &self.split
     }
 
+    /// Smallest projected solid angle in the table [sr].
+    pub fn smallest_projected_solid_angle(&self) -> f64 {
+        self.smallest_projected_solid_angle
+    }
+
+    /// The part of the luminous values that Radiance's library takes for diffuse [1/sr]: the table's least value, if it makes
+    /// up at least 1 % in all, and in a tree less than 150 %.
+    pub fn diffuse(&self) -> f64 {
+        self.diffuse
+    }
+
     /// The value as it is in the file [1/sr].
     pub fn value(&self, p_in: DVec2, p_out: DVec2) -> Rgb {
         self.at_index(self.luminous.index(p_in, p_out))
@@ -78,6 +94,25 @@ impl Distribution {
             None => f64::from(self.luminous.values()[index]),
         }
     }
+}
+
+fn diffuse(table: &Table) -> f64 {
+    let least = match table {
+        Table::Matrix(m) => m.values.iter().copied().fold(f32::INFINITY, f32::min),
+        Table::Tree(t) => {
+            let mut least = f32::INFINITY;
+            t.for_each_leaf(|leaf| {
+                // The half of an isotropic tree past the middle is not used.
+                if t.rank() == 4 || leaf.corner[0] < 0.5 {
+                    least = least.min(t.values()[leaf.index]);
+                }
+            });
+            least
+        }
+    };
+    let whole = PI * f64::from(least);
+    let counts = whole > 0.01 && (whole < 1.5 || matches!(table, Table::Matrix(_)));
+    if counts { f64::from(least) } else { 0.0 }
 }
 
 /// CIE XYZ to Radiance's channels; what lies outside their gamut is brought to its edge.

@@ -141,9 +141,10 @@ fn all_of_clear_glass_goes_through() {
             let straight =
                 luminance(o.distribution.value(a, a)) * o.distribution.luminous().projected_solid_angle(a, a);
             let whole = luminance(bsdf.hemispherical_smooth(w_in, Mode::Transmission, PeakRule::Off));
+            // A narrow lobe that explains them is up to 3.4 times as high in the middle (NARROWEST).
             let (got, strayed) = (luminance(column.through), whole - straight);
             assert!(
-                straight - got <= strayed.max(1e-4) && strayed < 0.01,
+                straight - got <= (3.4 * strayed).max(1e-4) && strayed < 0.01,
                 "{name} {w_in}: {got} of {straight} of {whole}"
             );
         }

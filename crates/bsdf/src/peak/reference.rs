@@ -4,11 +4,7 @@
 //! have an identity. Kept for comparison with the reference; the split is the default.
 
 use super::PeakRule;
-use crate::{
-    bsdf::{Bsdf, LAMBERTIAN, Mode},
-    proposal::Oriented,
-    table::Table,
-};
+use crate::bsdf::{Bsdf, Mode};
 use glam::DVec2;
 use std::f64::consts::PI;
 use sunpeak_core::{Rgb, Vec3, gray, luminance};
@@ -56,7 +52,7 @@ fn offsets() -> Vec<DVec2> {
 pub fn peak(bsdf: &Bsdf, w_in: Vec3, rule: PeakRule) -> Option<ReferencePeak> {
     let oriented = bsdf.distribution(w_in, Mode::Transmission)?;
     let table = oriented.distribution.luminous();
-    let smallest = table.smallest_projected_solid_angle();
+    let smallest = oriented.distribution.smallest_projected_solid_angle();
     let radius = smallest.sqrt();
 
     let mut seen: Vec<(usize, f64, Rgb)> = Vec::new(); // cell, projected solid angle, value
@@ -90,7 +86,7 @@ pub fn peak(bsdf: &Bsdf, w_in: Vec3, rule: PeakRule) -> Option<ReferencePeak> {
             count += 1.0;
         }
     }
-    let diffuse = diffuse(oriented);
+    let diffuse = gray(oriented.distribution.diffuse());
     let mean = if surround_area > 0.0 { surround / surround_area } else { Rgb::ZERO };
     let less_diffuse = (through - peak_area * diffuse).max(Rgb::ZERO);
     let least = LEAST_THROUGH[usize::from(rule == PeakRule::Radiance)];
@@ -105,27 +101,6 @@ pub fn peak(bsdf: &Bsdf, w_in: Vec3, rule: PeakRule) -> Option<ReferencePeak> {
         diffuse,
         smallest,
     })
-}
-
-/// The table's least value, if it counts as a diffuse part: at least 1 % in all, for a tree below 150 %.
-fn diffuse(oriented: &Oriented) -> Rgb {
-    let table = oriented.distribution.luminous();
-    let least = match table {
-        Table::Matrix(m) => m.values.iter().copied().fold(f32::INFINITY, f32::min),
-        Table::Tree(t) => {
-            let mut least = f32::INFINITY;
-            // The half of an isotropic tree past the middle is not used.
-            t.for_each_leaf(|leaf| {
-                if t.rank() == 4 || leaf.corner[0] < 0.5 {
-                    least = least.min(t.values()[leaf.index]);
-                }
-            });
-            least
-        }
-    };
-    let least = f64::from(least);
-    let too_much = matches!(table, Table::Tree(_)) && least >= 1.5 * LAMBERTIAN;
-    if least <= 0.01 * LAMBERTIAN || too_much { Rgb::ZERO } else { gray(least) }
 }
 
 /// The BSDF towards a light source: the surround's mean within the exclusion zone, the table outside it.
