@@ -1,16 +1,10 @@
 //! Suns that the picture knows exactly: out of their pixels, and sources of their own.
 
+use crate::behind::{self, Fit};
 use crate::field::Field;
 use std::collections::BTreeMap;
-use sunpeak_core::{LUMINOUS_EFFICACY, Vec3, luminance_cd_m2};
+use sunpeak_core::{Vec3, luminance_cd_m2};
 use sunpeak_scene::{ExactSource, Picture, disc_coverage};
-
-/// An eight-bit mantissa (RGBE) holds a pixel to this share of its largest channel: what is left of a pixel after a sun was
-/// taken out is known no better.
-const PIXEL_PRECISION: f64 = 1.0 / 128.0;
-
-/// Widest ring of pixels around a sun that is searched for what may lie behind it [pixels].
-const WIDEST_RING: usize = 8;
 
 /// The part of an exact source that lies in the picture, in front of the eye.
 #[derive(Clone, Copy, Debug)]
@@ -47,12 +41,13 @@ pub(crate) fn take_out(
         }
         found.push(visible);
     }
-    if lacks_light(field, &removed) {
+    if behind::uncover(field, picture, &removed, &place) == Fit::Poor {
         warnings.push(
-            "the pixels hold less light than the exact sources in the header say: was the picture changed since?".into(),
+            "the pixels do not hold the exact sources that the header states (was the picture resampled or changed since?): the \
+             sources count as stated, the pixels near them as those around"
+                .into(),
         );
     }
-    subtract(field, picture, &removed, &place);
     found
 }
 
@@ -104,68 +99,4 @@ fn outside(source: &ExactSource) -> String {
         "the exact source towards {:.4} {:.4} {:.4} lies outside the picture or gives no light: left out",
         d.x, d.y, d.z
     )
-}
-
-/// Do the pixels hold clearly less than what is to be taken out of them?
-fn lacks_light(field: &Field, removed: &BTreeMap<usize, f64>) -> bool {
-    let flux = |luminance: &dyn Fn(usize, f64) -> f64| -> f64 {
-        removed.iter().map(|(&i, &taken)| luminance(i, taken) * field.pixels[i].solid_angle_sr).sum()
-    };
-    flux(&|i, _| field.pixels[i].luminance_cd_m2) < 0.95 * flux(&|_, taken| taken)
-}
-
-/// Take the luminances out. Where no more is left than the pixel's own uncertainty, the pixels around say what lies behind.
-fn subtract(field: &mut Field, picture: &Picture, removed: &BTreeMap<usize, f64>, place: &[Option<usize>]) {
-    let mut unknown = Vec::new();
-    for (&i, &taken) in removed {
-        let pixel = &mut field.pixels[i];
-        let largest = picture.pixels[pixel.index].iter().fold(0.0_f32, |a, &b| a.max(b));
-        let uncertainty = LUMINOUS_EFFICACY * f64::from(largest) * PIXEL_PRECISION;
-        pixel.luminance_cd_m2 -= taken;
-        if pixel.luminance_cd_m2 <= uncertainty {
-            pixel.luminance_cd_m2 = pixel.luminance_cd_m2.max(0.0);
-            unknown.push(i);
-        }
-    }
-    let is_clear = |i: &usize| !removed.contains_key(i);
-    let behind: Vec<_> = unknown.iter().map(|&i| mean_around(field, i, place, is_clear)).collect();
-    for (i, luminance) in unknown.into_iter().zip(behind) {
-        if let Some(luminance) = luminance {
-            field.pixels[i].luminance_cd_m2 = luminance;
-        }
-    }
-}
-
-/// Mean luminance of the nearest ring around a pixel of the field that has usable pixels.
-fn mean_around(
-    field: &Field,
-    i: usize,
-    place: &[Option<usize>],
-    is_usable: impl Fn(&usize) -> bool,
-) -> Option<f64> {
-    let index = field.pixels[i].index;
-    let (column, row) = (index % field.width, index / field.width);
-    (1..=WIDEST_RING).find_map(|radius| {
-        let around: Vec<f64> = ring(column, row, radius, field.width, field.height)
-            .filter_map(|index| place[index])
-            .filter(&is_usable)
-            .map(|i| field.pixels[i].luminance_cd_m2)
-            .collect();
-        (!around.is_empty()).then(|| around.iter().sum::<f64>() / around.len() as f64)
-    })
-}
-
-/// Indices of the pixels at a distance of exactly `radius` columns or rows.
-fn ring(
-    column: usize,
-    row: usize,
-    radius: usize,
-    width: usize,
-    height: usize,
-) -> impl Iterator<Item = usize> {
-    let (rows, columns) =
-        (row.saturating_sub(radius)..=row + radius, column.saturating_sub(radius)..=column + radius);
-    rows.flat_map(move |r| columns.clone().map(move |c| (r, c)))
-        .filter(move |&(r, c)| r < height && c < width && r.abs_diff(row).max(c.abs_diff(column)) == radius)
-        .map(move |(r, c)| r * width + c)
 }

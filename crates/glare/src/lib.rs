@@ -1,13 +1,14 @@
 //! Glare metrics from pictures: position index, source detection, DGP and its siblings. How the picture was made is
 //! not known here.
 //!
-//! [`evaluate`] looks at a [`sunpeak_scene::Picture`] in five steps, one file each:
-//! `field` (luminance, solid angle and direction of each pixel), `exact` (suns that the picture knows exactly leave
-//! their pixels), `detect` (pixels that glare), `cluster` (which of them are one source), `dgp` (the equations).
+//! [`evaluate`] looks at a [`sunpeak_scene::Picture`] in five steps:
+//! `field` (luminance, solid angle and direction of each pixel), `exact` and `behind` (suns that the picture knows exactly
+//! leave their pixels), `detect` (pixels that glare), `cluster` (which of them are one source), `dgp` (the equations).
 //!
 //! All of it is written from publications; the comments name them. Where they leave a choice, it is an option in
 //! [`GlareOptions`] with evalglare's value as its default.
 
+mod behind;
 mod class;
 mod cluster;
 mod detect;

@@ -201,12 +201,32 @@ fn a_changed_or_foreign_sun_is_noted() {
     let mut scene = fisheye(200, |_| 300.0);
     add_sun(&mut scene, towards(10.0, 20.0), gray(4e5), 1.0);
     scene.exact_sources[0].radiance = gray(9e5);
-    assert!(report(&scene).warnings.iter().any(|w| w.contains("less light")));
+    assert!(report(&scene).warnings.iter().any(|w| w.contains("do not hold")));
     scene.exact_sources[0].radiance = Rgb::splat(f64::NAN);
     assert!(report(&scene).dgp.is_finite());
     scene.exact_sources[0].radiance = gray(4e5);
     scene.exact_sources[0].direction = -Vec3::Y;
     assert!(report(&scene).warnings.iter().any(|w| w.contains("outside the picture")));
+}
+
+/// A picture that was filtered since: the sun's light stands in other shares in its pixels, and in pixels beside them.
+#[test]
+fn a_blurred_sun_counts_once() {
+    let size = 400;
+    let mut scene = fisheye(size, |_| 300.0);
+    add_sun(&mut scene, towards(31.0, 22.0), gray(6e4), 1.0);
+    let sharp = report(&scene);
+    let original = scene.pixels.clone();
+    for i in size + 1..size * (size - 1) - 1 {
+        let around =
+            [i - size - 1, i - size, i - size + 1, i - 1, i, i + 1, i + size - 1, i + size, i + size + 1];
+        scene.pixels[i] = [around.map(|j| original[j][0]).iter().sum::<f32>() / 9.0; 3];
+    }
+    let blurred = report(&scene);
+    assert!(blurred.warnings.iter().any(|w| w.contains("do not hold")));
+    assert_eq!(blurred.sources.len(), 1, "{:?}", blurred.sources);
+    assert!((blurred.ev_lux / sharp.ev_lux - 1.0).abs() < 2e-3, "{} {}", blurred.ev_lux, sharp.ev_lux);
+    assert!((blurred.dgp - sharp.dgp).abs() < 1e-3);
 }
 
 #[test]
