@@ -5,17 +5,34 @@ channels in Radiance's primaries [W sr⁻¹ m⁻²]; luminance [cd/m²] = 179 (0
 """
 
 from sunpeak._core import InputError, __version__
-from sunpeak.scattering import Bsdf, Samples, direction
+from sunpeak.comfort import GlareReport, GlareSource, Task, glare
+from sunpeak.pictures import ExactSource, Picture
+from sunpeak.rendering import World, render, trace
+from sunpeak.scattering import Bsdf, Evidence, Samples, direction
+from sunpeak.scenes import Rays, Scene, View
 from sunpeak.skies import Place, Sky, SunPosition, sun_position
 
 __all__ = [
     "Bsdf",
+    "Evidence",
+    "ExactSource",
+    "GlareReport",
+    "GlareSource",
     "InputError",
+    "Picture",
     "Place",
+    "Rays",
     "Samples",
+    "Scene",
     "Sky",
     "SunPosition",
+    "Task",
+    "View",
+    "World",
     "__version__",
     "direction",
+    "glare",
+    "render",
     "sun_position",
+    "trace",
 ]

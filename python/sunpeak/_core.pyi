@@ -1,6 +1,8 @@
 """The compiled core: arrays are (n, 3) float64 and contiguous; the classes of `sunpeak` say the rest."""
 
+from collections.abc import Callable
 from os import PathLike
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -21,6 +23,8 @@ class Bsdf:
     def sample(
         self, w_in: _Floats, u: _Floats, peak: str
     ) -> tuple[_Floats, _Floats, _Floats, npt.NDArray[np.bool_]]: ...
+    def describe(self) -> dict[str, Any]: ...
+    def peak_evidence(self, w_in: _Floats) -> _Floats: ...
     def pdf(self, w_in: _Floats, w_out: _Floats, peak: str) -> _Floats: ...
 
 class Sky:
@@ -53,3 +57,97 @@ class Sky:
     @property
     def diffuse_horizontal_lux(self) -> float: ...
     def brightness(self, direction: tuple[float, float, float]) -> float: ...
+
+class Scene:
+    @staticmethod
+    def load(files: list[str], search_path: list[str], allow_commands: bool) -> Scene: ...
+    @staticmethod
+    def parse(text: str, name: str, search_path: list[str], allow_commands: bool) -> Scene: ...
+    @property
+    def surface_names(self) -> list[str]: ...
+    @property
+    def modifier_names(self) -> list[str]: ...
+    @property
+    def warnings(self) -> list[str]: ...
+
+class View:
+    @staticmethod
+    def load(path: str | PathLike[str]) -> View: ...
+    @staticmethod
+    def parse(options: str) -> View: ...
+    def options(self) -> str: ...
+    def fields(self) -> dict[str, Any]: ...
+    def fit_size(self, max_width: int, max_height: int) -> tuple[int, int]: ...
+    def rays(self, width: int, height: int) -> tuple[_Floats, _Floats]: ...
+    def solid_angles(self, width: int, height: int) -> _Floats: ...
+    def project(self, towards: _Floats) -> tuple[_Floats, _Floats]: ...
+
+class Picture:
+    @staticmethod
+    def load(path: str | PathLike[str]) -> Picture: ...
+    @staticmethod
+    def from_pixels(
+        pixels: npt.NDArray[np.float32], view: View | None, header: list[str], sources: _Floats
+    ) -> Picture: ...
+    def save(self, path: str | PathLike[str]) -> None: ...
+    @property
+    def shape(self) -> tuple[int, int]: ...
+    def pixels(self) -> npt.NDArray[np.float32]: ...
+    def luminance(self) -> _Floats: ...
+    @property
+    def view(self) -> View | None: ...
+    @property
+    def header(self) -> list[str]: ...
+    def sources(self) -> _Floats: ...
+
+def glare(
+    picture: Picture,
+    threshold: float,
+    threshold_kind: str,
+    task: tuple[tuple[float, float, float], float] | None,
+    search_angle_rad: float,
+    peak_cd_m2: float | None,
+    ev_lux: float | None,
+    low_light: bool,
+    below_sight: str,
+    relative_error: float,
+) -> dict[str, Any]: ...
+def fabric_xml(
+    basis: str,
+    openness: float,
+    cutoff_deg: float,
+    exponent: float,
+    scattered: float,
+    lobe_share: float,
+    lobe_sigma: float,
+    reflectance: float,
+) -> str: ...
+
+class World:
+    @staticmethod
+    def compile(scene: Scene, peak: str) -> World: ...
+
+def render(
+    world: World,
+    view: View,
+    width: int,
+    height: int,
+    samples: int | None,
+    time_s: float | None,
+    seed: int,
+    threads: int | None,
+    max_bounces: int | None,
+    progress: Callable[[int, int], None] | None,
+) -> Picture: ...
+def trace(
+    world: World,
+    origins: _Floats,
+    directions: _Floats,
+    irradiance: bool,
+    samples: int | None,
+    time_s: float | None,
+    seed: int,
+    threads: int | None,
+    max_bounces: int | None,
+    progress: Callable[[int, int], None] | None,
+) -> _Floats: ...

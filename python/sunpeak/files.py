@@ -1,5 +1,6 @@
 """Files are written whole or not at all."""
 
+import errno
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -14,19 +15,23 @@ def whole_file(path: str | PathLike[str]) -> Iterator[Path]:
     If the block raises (Ctrl-C too), `path` stays as it was and nothing is left behind.
     """
     target = Path(path)
-    if target.is_dir():
-        raise IsADirectoryError(21, "is a folder; expected the name of a file", str(target))
+    check_target(target)
     # The suffix stays the last part: some writers choose the format by it.
     temporary = target.with_name(f".{target.stem}.{os.getpid()}{target.suffix}")
     try:
         yield temporary
         temporary.replace(target)
-    except FileNotFoundError as error:
-        if not target.parent.is_dir():
-            raise FileNotFoundError(2, f"there is no folder {target.parent}", str(target)) from error
-        raise
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def check_target(path: str | PathLike[str]) -> None:
+    """Refuse a name that cannot be written to, before work is put into what would be written."""
+    target = Path(path)
+    if target.is_dir():
+        raise IsADirectoryError(errno.EISDIR, "is a folder; expected the name of a file", str(target))
+    if not target.parent.is_dir():
+        raise FileNotFoundError(errno.ENOENT, f"there is no folder {target.parent}", str(target))
 
 
 def write_text(path: str | PathLike[str], text: str) -> None:

@@ -6,7 +6,7 @@ direction), `w_out` the other one.
 """
 
 from os import PathLike
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, TypedDict, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -37,6 +37,48 @@ class Samples(NamedTuple):
     """Density [1/sr] of smooth samples, probability [-] of straight ones (n,)."""
     kind: npt.NDArray[np.str_]
     """`smooth` or `straight` (n,)."""
+
+
+class Evidence(NamedTuple):
+    """What the split found in the table's columns, one row for each incident direction; NaN where nothing is there."""
+
+    through: Floats
+    """Through transmittance [-], the mean over the column; 0 where no peak was accepted."""
+    contrast: Floats
+    """Flux of the peak over the flux that the surround has in the same cells [-]."""
+    detection_limit: Floats
+    """What a peak must exceed to be accepted [-]: where there is none, the upper bound of what is hidden."""
+    low: Floats
+    """Lowest through transmittance that the data allow [-]."""
+    high: Floats
+    """Highest through transmittance that the data allow [-]."""
+    lobe_sigma: Floats
+    """Standard deviation of the smooth lobe under the peak, in projected coordinates [-]."""
+
+
+class Component(TypedDict):
+    """One table of a file, as rays meet it."""
+
+    mode: Mode
+    side: Literal["front", "back"]
+    basis: str
+    incident_cells: int
+    values: int
+    smallest_cell_sr: float
+    isotropic: bool
+    colour: bool
+    by_reciprocity: bool
+    has_peak: bool
+
+
+class Description(TypedDict):
+    """What a file says about itself."""
+
+    name: str
+    manufacturer: str
+    structure: str
+    warnings: list[str]
+    components: list[Component]
 
 
 class Bsdf:
@@ -98,6 +140,14 @@ class Bsdf:
         incident, uniform = together(w_in, u)
         directions, weights, pdf, straight = self._core.sample(incident, uniform, peak)
         return Samples(directions, weights, pdf, np.where(straight, "straight", "smooth"))
+
+    def describe(self) -> Description:
+        """Say what is in the file: names, warnings, and its tables by the side that rays meet."""
+        return cast("Description", self._core.describe())
+
+    def evidence(self, w_in: npt.ArrayLike) -> Evidence:
+        """Say why the split took a peak, or did not, for each incident direction (n, 3)."""
+        return Evidence(*self._core.peak_evidence(rows(w_in)).T)
 
     def pdf(self, w_in: npt.ArrayLike, w_out: npt.ArrayLike, peak: Peak = "split") -> Floats:
         """Density [1/sr] with which `sample` draws `w_out` from its smooth lobe, (n,)."""

@@ -1,12 +1,19 @@
 //! NumPy arrays to vectors and back.
 
 use crate::error::InputError;
-use numpy::{PyArray1, PyArray2, PyReadonlyArray2, ndarray::Array2};
+use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray2, ndarray::Array2};
 use pyo3::prelude::*;
 use sunpeak_core::{Rgb, Vec3};
 
 /// How far from 1 the length of a direction may be before it is refused: more than rounding, less than a mistake.
 const UNIT_TOLERANCE: f64 = 1e-3;
+
+/// (n,)
+pub type Numbers<'py> = Bound<'py, PyArray1<f64>>;
+/// (n, 3)
+pub type Rows<'py> = Bound<'py, PyArray2<f64>>;
+/// (h, w, 3)
+pub type Image<'py> = Bound<'py, PyArray3<f64>>;
 
 /// Rows (n, 3) as vectors.
 pub fn vectors(array: &PyReadonlyArray2<'_, f64>, name: &str) -> PyResult<Vec<Vec3>> {
@@ -36,13 +43,13 @@ pub fn directions(array: &PyReadonlyArray2<'_, f64>, name: &str) -> PyResult<Vec
 }
 
 /// Vectors or colours as rows (n, 3).
-pub fn rows<'py>(py: Python<'py>, values: &[Vec3]) -> Bound<'py, PyArray2<f64>> {
+pub fn rows<'py>(py: Python<'py>, values: &[Vec3]) -> Rows<'py> {
     let array = Array2::from_shape_fn((values.len(), 3), |(row, column)| values[row][column]);
     PyArray2::from_owned_array(py, array)
 }
 
 /// Numbers (n,).
-pub fn numbers<'py>(py: Python<'py>, values: Vec<f64>) -> Bound<'py, PyArray1<f64>> {
+pub fn numbers<'py>(py: Python<'py>, values: Vec<f64>) -> Numbers<'py> {
     PyArray1::from_vec(py, values)
 }
 

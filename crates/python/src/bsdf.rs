@@ -1,13 +1,14 @@
 //! `Bsdf`: a scattering table with arrays of directions.
 
-use crate::arrays::{colours, directions, numbers, rows, vectors};
+use crate::arrays::{Numbers, Rows, colours, directions, numbers, rows, vectors};
 use crate::error::{InputError, OrRaise};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use rayon::prelude::*;
 use std::path::PathBuf;
 use std::sync::Arc;
-use sunpeak_bsdf::{Bsdf, Mode, PeakRule};
+use sunpeak_bsdf::{Bsdf, ColumnPeak, Mode, PeakRule, table::Table};
 use sunpeak_core::{Rgb, Vec3, luminance};
 
 /// One product: front and back, reflection and transmission. Arrays are (n, 3) in the BSDF's frame.
@@ -96,19 +97,13 @@ impl PyBsdf {
         Ok(colours(py, &values, colour))
     }
 
-    #[expect(clippy::type_complexity, reason = "a tuple of arrays is what Python unpacks")]
     fn sample<'py>(
         &self,
         py: Python<'py>,
         w_in: PyReadonlyArray2<'py, f64>,
         u: PyReadonlyArray2<'py, f64>,
         peak: &str,
-    ) -> PyResult<(
-        Bound<'py, PyArray2<f64>>,
-        Bound<'py, PyArray2<f64>>,
-        Bound<'py, PyArray1<f64>>,
-        Bound<'py, PyArray1<bool>>,
-    )> {
+    ) -> PyResult<(Rows<'py>, Rows<'py>, Numbers<'py>, Bound<'py, PyArray1<bool>>)> {
         let rule = peak_rule(peak)?;
         let incident = directions(&w_in, "w_in")?;
         let numbers_in = vectors(&u, "u")?;
@@ -123,13 +118,46 @@ impl PyBsdf {
         Ok((outgoing, weights, densities, straight))
     }
 
+    /// Name, manufacturer, structure, warnings and components of the file.
+    fn describe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let mut components = Vec::new();
+        for mode in [Mode::Transmission, Mode::Reflection] {
+            for front in [true, false] {
+                components.extend(self.component(py, front, mode)?);
+            }
+        }
+        let about = PyDict::new(py);
+        about.set_item("name", &self.0.name)?;
+        about.set_item("manufacturer", &self.0.manufacturer)?;
+        about.set_item("structure", &self.0.structure)?;
+        about.set_item("warnings", &self.0.warnings)?;
+        about.set_item("components", components)?;
+        Ok(about)
+    }
+
+    /// For each direction the split's column: through transmittance, contrast, detection limit, interval (low and high) and
+    /// the smooth lobe's width; NaN where nothing is transmitted.
+    fn peak_evidence<'py>(&self, py: Python<'py>, w_in: PyReadonlyArray2<'py, f64>) -> PyResult<Rows<'py>> {
+        let found = directions(&w_in, "w_in")?.into_iter().map(|w| self.column_peak(w));
+        let rows: Vec<Vec<f64>> = found
+            .map(|column| match column {
+                Some(c) => {
+                    let [low, high] = c.interval;
+                    vec![luminance(c.through), c.contrast, c.detection_limit, low, high, c.lobe_sigma]
+                }
+                None => vec![f64::NAN; 6],
+            })
+            .collect();
+        PyArray2::from_vec2(py, &rows).map_err(|error| InputError::new_err(error.to_string()))
+    }
+
     fn pdf<'py>(
         &self,
         py: Python<'py>,
         w_in: PyReadonlyArray2<'py, f64>,
         w_out: PyReadonlyArray2<'py, f64>,
         peak: &str,
-    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    ) -> PyResult<Numbers<'py>> {
         let rule = peak_rule(peak)?;
         let pairs = pairs(&w_in, &w_out)?;
         let values = py.detach(|| {
@@ -143,6 +171,39 @@ impl PyBsdf {
 }
 
 impl PyBsdf {
+    /// What the file holds for the traced ray's `side` and `mode`.
+    fn component<'py>(
+        &self,
+        py: Python<'py>,
+        front: bool,
+        mode: Mode,
+    ) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let w_in = if front { Vec3::Z } else { Vec3::NEG_Z };
+        let Some(oriented) = self.0.distribution(w_in, mode) else { return Ok(None) };
+        let distribution = &oriented.distribution;
+        let about = PyDict::new(py);
+        about.set_item("mode", if mode == Mode::Transmission { "transmission" } else { "reflection" })?;
+        about.set_item("side", if front { "front" } else { "back" })?;
+        about.set_item("basis", basis_name(distribution.luminous()))?;
+        about.set_item("incident_cells", distribution.columns().len())?;
+        about.set_item("values", distribution.luminous().values().len())?;
+        about.set_item("smallest_cell_sr", distribution.luminous().smallest_projected_solid_angle())?;
+        about.set_item("isotropic", distribution.luminous().is_isotropic())?;
+        about.set_item("colour", distribution.color().is_some())?;
+        about.set_item("by_reciprocity", oriented.reversed)?;
+        about.set_item("has_peak", distribution.split().has_peak())?;
+        Ok(Some(about))
+    }
+
+    /// What the split found in the column of the table that `w_in` falls into.
+    fn column_peak(&self, w_in: Vec3) -> Option<ColumnPeak> {
+        let oriented = self.0.distribution(w_in, Mode::Transmission)?;
+        let straight = -w_in.truncate();
+        let (incident, _) = oriented.points(straight, straight);
+        let column = oriented.distribution.columns().index(incident);
+        oriented.distribution.split().columns().get(column).copied()
+    }
+
     /// Share of the samples that go straight: the peak's flux over all of it.
     fn straight_probability(&self, w_in: Vec3, rule: PeakRule) -> f64 {
         let through = luminance(self.0.through(w_in, rule));
@@ -172,6 +233,16 @@ impl PyBsdf {
             },
             None => Draw { w_out: -w_in, weight: Rgb::ZERO, pdf: 0.0, straight: false },
         }
+    }
+}
+
+fn basis_name(table: &Table) -> String {
+    match table {
+        Table::Matrix(matrix) if matrix.incident.name() == matrix.exiting.name() => {
+            matrix.incident.name().to_owned()
+        }
+        Table::Matrix(matrix) => format!("{} by {}", matrix.incident.name(), matrix.exiting.name()),
+        Table::Tree(tree) => format!("TensorTree{}", tree.rank()),
     }
 }
 

@@ -3,6 +3,11 @@
 mod arrays;
 mod bsdf;
 mod error;
+mod fabric;
+mod glare;
+mod picture;
+mod render;
+mod scene;
 mod sky;
 mod watch;
 
@@ -15,6 +20,16 @@ mod _core {
     use super::bsdf::PyBsdf;
     #[pymodule_export]
     use super::error::InputError;
+    #[pymodule_export]
+    use super::fabric::fabric_xml;
+    #[pymodule_export]
+    use super::glare::glare;
+    #[pymodule_export]
+    use super::picture::PyPicture;
+    #[pymodule_export]
+    use super::render::{PyWorld, render, trace};
+    #[pymodule_export]
+    use super::scene::{PyScene, PyView};
     #[pymodule_export]
     use super::sky::PySky;
 

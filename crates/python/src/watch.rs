@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::{Duration, Instant};
-use sunpeak_core::{Control, Error, Result};
+use sunpeak_core::{Control, Result};
 
 /// How often the waiting thread looks for Ctrl-C.
 const POLL: Duration = Duration::from_millis(50);
@@ -71,16 +71,4 @@ fn attend(control: &Control, progress: Option<&Py<PyAny>>) -> PyResult<()> {
         }
         Ok(())
     })
-}
-
-/// Run on `threads` threads; 0 is as many as there are cores.
-pub fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
-    if threads == 0 {
-        return work();
-    }
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .map_err(|error| Error::value(format!("cannot start {threads} threads: {error}")))?;
-    pool.install(work)
 }

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from sunpeak import InputError, __version__
-from sunpeak.cli import sky
+from sunpeak.cli import bsdf, demo, glare, render, sky, trace
 
 EXIT_WRONG_INPUT = 1
 EXIT_INTERRUPTED = 130
@@ -23,6 +23,11 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+app.command("demo", rich_help_panel="Results")(demo.command)
+app.command("render", rich_help_panel="Results")(render.command)
+app.command("trace", rich_help_panel="Results")(trace.command)
+app.command("glare", rich_help_panel="Results")(glare.command)
+app.add_typer(bsdf.app, name="bsdf", rich_help_panel="Input")
 app.add_typer(sky.app, name="sky", rich_help_panel="Input")
 
 

@@ -6,6 +6,7 @@ from importlib import resources
 from string import Template
 
 import numpy as np
+import numpy.typing as npt
 
 from sunpeak import __version__
 from sunpeak.demo import fabric, room
@@ -89,9 +90,9 @@ def gallery_row(pair: Pair, exposure: float) -> str:
 def figure(case: Case, exposure: float) -> str:
     """Write one picture, tone-mapped and in false colours, with the close-up of the sun."""
     luminance = luminance_cd_m2(case.pixels)
-    seen = case.pixels.sum(axis=2) > 0
+    shown = seen(luminance.shape)
     mapped = tonemap(case.pixels, exposure)
-    mapped[~seen] = 255
+    mapped[~shown] = 255
     near = false_colour(luminance_cd_m2(case.close_up), SCALE_CD_M2)
     near = near.repeat(CLOSE_UP_ZOOM, axis=0).repeat(CLOSE_UP_ZOOM, axis=1)
     peak = "with peak extraction" if case.peak != "off" else "without peak extraction"
@@ -101,10 +102,18 @@ def figure(case: Case, exposure: float) -> str:
   <figcaption><b>{peak}</b><span>{numbers}</span></figcaption>
   <div class="view">
     {picture(mapped, f"{pair_name(case)}, tone-mapped", "mapped")}
-    {picture(false_colour(luminance, SCALE_CD_M2, seen), f"{pair_name(case)}, false colours", "false")}
+    {picture(false_colour(luminance, SCALE_CD_M2, shown), f"{pair_name(case)}, false colours", "false")}
     {picture(near, f"{pair_name(case)}, the sun close up", "near")}
   </div>
 </figure>"""
+
+
+def seen(shape: tuple[int, ...]) -> npt.NDArray[np.bool_]:
+    """Which pixels (h, w) of the fisheye are before the eye; an angular fisheye has corners that look back."""
+    height, width = shape[:2]
+    y, x = np.mgrid[0:height, 0:width]
+    inside: npt.NDArray[np.bool_] = np.hypot((x + 0.5) / width - 0.5, (y + 0.5) / height - 0.5) <= 0.5
+    return inside
 
 
 def pair_name(case: Case) -> str:

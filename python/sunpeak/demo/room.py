@@ -24,6 +24,9 @@ DIRECT_NORMAL_W_M2 = 280.0
 DIFFUSE_HORIZONTAL_W_M2 = 150.0
 """A hazy day: with the fabric's 2 % openness the eye receives some 400 lx, as in the paper's example."""
 
+NEIGHBOUR_M = (3.0, -34.0)
+"""South-east of the room, away from the sun: something to see through the fabric."""
+
 PANES_Y_M = (-0.05, -0.07)
 """Two panes of clear glass outside the fabric."""
 
@@ -50,6 +53,11 @@ void plastic table_top
 0
 0
 5 0.4 0.33 0.25 0 0
+
+void plastic plaster
+0
+0
+5 0.45 0.4 0.36 0 0
 
 void glass clear_glass
 0
@@ -81,6 +89,7 @@ def room_text() -> str:
         polygon("wall", "north", (x0, y1, 0), (x1, y1, 0), (x1, y1, z1), (x0, y1, z1)),
         polygon("table_top", "table", (-0.8, 0.5, 0.74), (0.8, 0.5, 0.74), (0.8, 1.3, 0.74), (-0.8, 1.3, 0.74)),
     ]
+    parts.append(f"\n!genbox plaster neighbour 9 8 11 | xform -t {NEIGHBOUR_M[0]:g} {NEIGHBOUR_M[1]:g} -0.5\n")
     parts += [facade("clear_glass", f"pane_{number}", y) for number, y in enumerate(PANES_Y_M, start=1)]
     return "".join(parts)
 

@@ -1,0 +1,161 @@
+//! `Scene` and `View`: what scene files and view files say.
+
+use crate::arrays::{Image, Numbers, directions, numbers};
+use crate::error::{InputError, OrRaise};
+use numpy::{PyArray2, PyArray3, PyReadonlyArray2, ndarray};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::path::PathBuf;
+use std::sync::Arc;
+use sunpeak_core::Vec3;
+use sunpeak_scene::{Camera, LoadOptions, Scene, View, ViewRay};
+
+/// Surfaces and modifiers, in file order.
+#[pyclass(frozen, name = "Scene", module = "sunpeak._core")]
+pub struct PyScene(pub Arc<Scene>);
+
+#[pymethods]
+impl PyScene {
+    #[staticmethod]
+    fn load(
+        py: Python<'_>,
+        files: Vec<PathBuf>,
+        search_path: Vec<PathBuf>,
+        allow_commands: bool,
+    ) -> PyResult<Self> {
+        let options = options(search_path, allow_commands);
+        let scene = py.detach(|| Scene::load(&files, &options)).or_raise()?;
+        Ok(Self(Arc::new(scene)))
+    }
+
+    #[staticmethod]
+    fn parse(
+        py: Python<'_>,
+        text: &str,
+        name: &str,
+        search_path: Vec<PathBuf>,
+        allow_commands: bool,
+    ) -> PyResult<Self> {
+        let options = options(search_path, allow_commands);
+        let scene = py.detach(|| Scene::parse(text, name, &options)).or_raise()?;
+        Ok(Self(Arc::new(scene)))
+    }
+
+    #[getter]
+    fn surface_names(&self) -> Vec<&str> {
+        self.0.surfaces.iter().map(|surface| surface.name.as_str()).collect()
+    }
+
+    #[getter]
+    fn modifier_names(&self) -> Vec<&str> {
+        self.0.modifiers.iter().map(|modifier| modifier.name.as_str()).collect()
+    }
+
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.0.warnings.iter().map(ToString::to_string).collect()
+    }
+}
+
+/// The search path given, then that of the environment (`RAYPATH`).
+fn options(search_path: Vec<PathBuf>, allow_commands: bool) -> LoadOptions {
+    let environment = LoadOptions::from_environment();
+    let search_path = search_path.into_iter().chain(environment.search_path.clone()).collect();
+    LoadOptions { search_path, allow_commands, ..environment }
+}
+
+/// How directions are laid on a picture.
+#[pyclass(frozen, name = "View", module = "sunpeak._core")]
+pub struct PyView(pub View);
+
+#[pymethods]
+impl PyView {
+    #[staticmethod]
+    fn load(path: PathBuf) -> PyResult<Self> {
+        Ok(Self(View::load(&path).or_raise()?))
+    }
+
+    #[staticmethod]
+    fn parse(options: &str) -> PyResult<Self> {
+        Ok(Self(View::parse(options).or_raise()?))
+    }
+
+    fn options(&self) -> String {
+        self.0.to_string()
+    }
+
+    /// The fields, by the names of the Python class.
+    fn fields<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let view = &self.0;
+        let fields = PyDict::new(py);
+        fields.set_item("kind", view.kind.option())?;
+        fields.set_item("position", view.position.to_array())?;
+        fields.set_item("direction", view.direction.to_array())?;
+        fields.set_item("up", view.up.to_array())?;
+        fields.set_item("horizontal_deg", view.horizontal_deg)?;
+        fields.set_item("vertical_deg", view.vertical_deg)?;
+        Ok(fields)
+    }
+
+    fn fit_size(&self, max_width: usize, max_height: usize) -> (usize, usize) {
+        self.0.fit_size(max_width, max_height)
+    }
+
+    /// Origins and unit directions (h, w, 3) of the rays through the middles of the pixels; NaN where the view does not reach.
+    fn rays<'py>(&self, py: Python<'py>, width: usize, height: usize) -> PyResult<(Image<'py>, Image<'py>)> {
+        let camera = self.camera()?;
+        let nowhere = ViewRay { origin: Vec3::NAN, direction: Vec3::NAN, max_distance: f64::NAN };
+        let rays: Vec<ViewRay> = py.detach(|| {
+            let middles = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
+            middles
+                .map(|(column, row)| {
+                    let x = (column as f64 + 0.5) / width as f64;
+                    let y = 1.0 - (row as f64 + 0.5) / height as f64;
+                    camera.ray(x, y).unwrap_or(nowhere)
+                })
+                .collect()
+        });
+        let array = |part: fn(&ViewRay) -> Vec3| {
+            let values =
+                ndarray::Array3::from_shape_fn((height, width, 3), |(r, c, i)| part(&rays[r * width + c])[i]);
+            PyArray3::from_owned_array(py, values)
+        };
+        Ok((array(|ray| ray.origin), array(|ray| ray.direction)))
+    }
+
+    /// Solid angles [sr] of the pixels (h, w).
+    fn solid_angles<'py>(
+        &self,
+        py: Python<'py>,
+        width: usize,
+        height: usize,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let camera = self.camera()?;
+        let angles = py.detach(|| camera.solid_angles(width, height));
+        let array = ndarray::Array2::from_shape_vec((height, width), angles)
+            .map_err(|error| InputError::new_err(error.to_string()))?;
+        Ok(PyArray2::from_owned_array(py, array))
+    }
+
+    /// Where directions (n, 3) fall on the picture: x to the right and y upwards, 0 to 1 (n, 2); NaN where they do not.
+    fn project<'py>(
+        &self,
+        py: Python<'py>,
+        towards: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<(Numbers<'py>, Numbers<'py>)> {
+        let camera = self.camera()?;
+        let points: Vec<[f64; 2]> = directions(&towards, "directions")?
+            .into_iter()
+            .map(|direction| camera.project(direction).unwrap_or([f64::NAN; 2]))
+            .collect();
+        let [x, y] = [0, 1].map(|axis| numbers(py, points.iter().map(|point| point[axis]).collect()));
+        Ok((x, y))
+    }
+}
+
+impl PyView {
+    fn camera(&self) -> PyResult<Camera> {
+        self.0.check().or_raise()?;
+        Camera::new(&self.0).ok_or_else(|| InputError::new_err("the view cannot be used"))
+    }
+}

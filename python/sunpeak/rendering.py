@@ -1,0 +1,118 @@
+"""Rendering: pictures, rays and sensors by path tracing."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+import numpy.typing as npt
+
+from sunpeak import _core
+from sunpeak.pictures import Picture
+from sunpeak.progress import Callback, progress_bar
+from sunpeak.scattering import Floats, Peak, rows
+from sunpeak.scenes import Scene, View
+
+DEFAULT_SIZE = (512, 512)
+
+
+class World:
+    """A scene compiled for rendering, with one rule for the peaks. Immutable; use it for many pictures."""
+
+    def __init__(self, core: _core.World) -> None:
+        """Wrap the compiled world; users call `compile`."""
+        self._core = core
+
+    @classmethod
+    def compile(cls, scene: Scene, peak: Peak = "split") -> "World":
+        """Compile a scene: geometry, materials, lights, and the BSDF files that it names.
+
+        Raises `InputError` with file, line and column for what the scene does not allow.
+        """
+        return cls(_core.World.compile(scene._core, peak))
+
+
+def render(
+    scene: Scene | World,
+    view: View,
+    size: tuple[int, int] = DEFAULT_SIZE,
+    *,
+    peak: Peak = "split",
+    samples: int | None = None,
+    time: float | None = None,
+    seed: int = 0,
+    threads: int | None = None,
+    max_bounces: int | None = None,
+    progress: bool | Callback = False,
+) -> Picture:
+    """Render a picture of `size` (width, height) pixels.
+
+    It takes `samples` paths for each pixel (64 unless told otherwise), or as many as fit in `time` seconds. The same
+    seed and number of samples give the same picture on any number of `threads` (None: all cores). `max_bounces` limits
+    diffuse bounces, as Radiance's `-ab`; None is no limit. `peak` says which part of `aBSDF` tables goes straight
+    through; a `World` has chosen already.
+
+    `progress` shows a bar on standard error, or is a function that is called with the work done and in all. Ctrl-C
+    stops the rendering (`KeyboardInterrupt`).
+    """
+    width, height = size
+    world = compiled(scene, peak)
+    with reporting(progress, "rendering") as callback:
+        picture = _core.render(
+            world._core, view._core, width, height, samples, time, seed, threads, max_bounces, callback
+        )
+    return Picture(picture)
+
+
+def trace(
+    scene: Scene | World,
+    origins: npt.ArrayLike,
+    directions: npt.ArrayLike,
+    *,
+    irradiance: bool = False,
+    peak: Peak = "split",
+    samples: int | None = None,
+    time: float | None = None,
+    seed: int = 0,
+    threads: int | None = None,
+    max_bounces: int | None = None,
+    progress: bool | Callback = False,
+) -> Floats:
+    """Radiance along rays (n, 3) [W sr⁻¹ m⁻²], or irradiance at sensors [W m⁻²]: three channels (n, 3).
+
+    `origins` (n, 3) are points [m]; `directions` (n, 3) are where the rays go, or the normals of the sensors; their
+    length does not count. The other arguments are those of `render`. 179 (0.265 R + 0.670 G + 0.065 B) gives
+    luminance [cd/m²] or illuminance [lx].
+    """
+    points, towards = rows(origins), normalized(rows(directions))
+    if len(points) != len(towards):
+        raise _core.InputError(f"{len(points)} origins and {len(towards)} directions; expected as many of both")
+    world = compiled(scene, peak)
+    with reporting(progress, "tracing") as callback:
+        return _core.trace(
+            world._core, points, towards, irradiance, samples, time, seed, threads, max_bounces, callback
+        )
+
+
+def compiled(scene: Scene | World, peak: Peak) -> World:
+    """Compile the scene unless that was done."""
+    return scene if isinstance(scene, World) else World.compile(scene, peak)
+
+
+def normalized(vectors: Floats) -> Floats:
+    """Unit vectors; what has no direction is refused with its row."""
+    lengths = np.linalg.norm(vectors, axis=1)
+    wrong = np.flatnonzero(~(np.isfinite(lengths) & (lengths > 0)))
+    if wrong.size:
+        raise _core.InputError(f"directions: row {wrong[0]} is {vectors[wrong[0]].tolist()}; expected a direction")
+    unit: Floats = vectors / lengths[:, None]
+    return unit
+
+
+@contextmanager
+def reporting(progress: bool | Callback, title: str) -> Iterator[Callback | None]:
+    """Give the function to call with the progress, if any."""
+    if callable(progress):
+        yield progress
+    else:
+        with progress_bar(title, progress) as callback:
+            yield callback

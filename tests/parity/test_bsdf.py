@@ -1,0 +1,115 @@
+"""Scattering tables against Radiance's own library and program, on real files."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import sunpeak as sp
+from conftest import Radiance, luminance
+
+# Radiance's library moves values by up to 3e-4, so that neighbouring cells differ.
+PERTURBATION = 4e-4
+
+REFUSED_BY_RADIANCE = {"not-xml", "short-matrix_must-be-refused", "roman-shade_klems-full_crlf_radiance-rejects"}
+
+FILES = [
+    "blinds_klems-full_leading-text",
+    "blinds_t3-1024_leading-text",
+    "clear-glass-3mm_klems-full",
+    "clear-glass_t4-4096",
+    "diffuse-glass_klems-full",
+    "diffusing-panel_klems-full",
+    "electrochromic-60_klems-full",
+    "escreen-3pct-charcoal_klems-full",
+    "escreen-3pct_klems-half",
+    "escreen-3pct_klems-quarter",
+    "louvre_t4-256",
+    "metal-grate_klems-full_xyz",
+    "metal-grate_t3-1024",
+    "metal-grate_t4-256",
+    "shade-020_klems-full",
+    "shade-2011-sa1_klems-full",
+    "silverscreen-2pct-dark-gray_klems-full",
+]
+
+# In a process of its own: the library keeps every file that it has seen.
+ASK = """
+import json, sys
+import pyradiance.bsdf as library
+table = library.load_file(sys.argv[1])
+pairs = json.load(sys.stdin)
+values = [library.query(table, *pair).tolist() for pair in pairs]
+halves = [library.SAMPLE_DF | library.SAMPLE_SPT, library.SAMPLE_DF | library.SAMPLE_SPR]
+hemispherical = [[library.direct_hemi(table, *pair[:2], half) for half in halves] for pair in pairs]
+json.dump({"values": values, "hemispherical": hemispherical}, sys.stdout)
+"""
+
+
+def angles(count: int, seed: int) -> np.ndarray:
+    """Random theta and phi [deg] over the sphere, twice a row."""
+    random = np.random.default_rng(seed)
+    theta = np.degrees(np.arccos(random.uniform(-1, 1, (count, 2))))
+    phi = random.uniform(0, 360, (count, 2))
+    return np.stack([theta[:, 0], phi[:, 0], theta[:, 1], phi[:, 1]], axis=1)
+
+
+def ask(path: Path, pairs: np.ndarray) -> dict[str, np.ndarray]:
+    """What the library says."""
+    pytest.importorskip("pyradiance", reason="the oracle pyradiance is not installed")
+    done = subprocess.run(
+        [sys.executable, "-c", ASK, path], input=json.dumps(pairs.tolist()), capture_output=True, text=True, check=True
+    )
+    return {key: np.array(value) for key, value in json.loads(done.stdout).items()}
+
+
+@pytest.fixture(params=FILES)
+def path(request: pytest.FixtureRequest, shared: Path) -> Path:
+    return shared / "bsdf" / f"{request.param}.xml"
+
+
+def test_every_file_is_asked_for(shared: Path) -> None:
+    found = {file.stem for file in (shared / "bsdf").glob("*.xml")}
+    assert found - REFUSED_BY_RADIANCE == set(FILES)
+
+
+def test_values(path: Path) -> None:
+    pairs = angles(400, seed=1)
+    theirs = ask(path, pairs)["values"]
+    ours = sp.Bsdf.load(path).evaluate(sp.direction(*pairs[:, :2].T), sp.direction(*pairs[:, 2:].T))
+    np.testing.assert_allclose(ours, theirs[:, 1], rtol=PERTURBATION, atol=1e-9)
+
+
+def test_hemispherical_values(path: Path) -> None:
+    """To 2e-3: the library sums trees over cumulative tables of limited size."""
+    pairs = angles(100, seed=2)
+    theirs = ask(path, pairs)["hemispherical"]
+    bsdf, w_in = sp.Bsdf.load(path), sp.direction(*pairs[:, :2].T)
+    for mode, expected in zip(("transmission", "reflection"), theirs.T, strict=True):
+        np.testing.assert_allclose(bsdf.hemispherical(w_in, mode), expected, rtol=2e-3, atol=1e-5, err_msg=mode)
+
+
+def test_through_transmittance_in_radiance_mode(path: Path, radiance: Radiance, tmp_path: Path) -> None:
+    """A view ray through one aBSDF polygon, a glow of 0.2 degrees exactly behind it."""
+    theta, phi = np.meshgrid([3.0, 12.0, 24.0, 37.0, 51.0, 64.0, 149.0, 171.0], [20.0, 75.0, 160.0, 290.0])
+    w_in = sp.direction(theta.ravel(), phi.ravel())
+    sources = "".join(f"g source s{i} 0 0 4 {-x:.9f} {-y:.9f} {-z:.9f} 0.2\n" for i, (x, y, z) in enumerate(w_in))
+    scene = (
+        f"void aBSDF m 5 {path} 0 1 0 . 0 0\n"
+        "m polygon p 0 0 12 -100 -100 0 100 -100 0 100 100 0 -100 100 0\n"
+        "void glow g 0 0 4 1 1 1 -1\n" + sources
+    )
+    octree = radiance.octree(tmp_path / "through.oct", text=scene)
+    theirs = radiance.rtrace(octree, np.hstack([w_in, -w_in]), "-ab", "0", "-st", "1", "-ss", "0")
+    ours = sp.Bsdf.load(path).through(w_in, "radiance")
+    np.testing.assert_allclose(ours, luminance(theirs) / 179.0, rtol=PERTURBATION, atol=1e-5)
+
+
+@pytest.mark.parametrize("name", sorted(REFUSED_BY_RADIANCE - {"roman-shade_klems-full_crlf_radiance-rejects"}))
+def test_unsound_files_are_refused_with_their_place(name: str, shared: Path) -> None:
+    path = shared / "bsdf" / f"{name}.xml"
+    with pytest.raises(sp.InputError, match=rf"{name}\.xml:\d+:\d+: .*expected"):
+        sp.Bsdf.load(path)
