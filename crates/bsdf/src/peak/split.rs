@@ -114,7 +114,13 @@ impl Split {
                 through += (in_channels(&whole) - stored).max(Rgb::ZERO) * cell.projected_solid_angle;
             }
         }
-        let noise = MIN_SIGNIFICANCE / 2.0 * error;
+        // Two standard errors: of the surround, and of the candidates' own values.
+        let counted: f64 = cells
+            .iter()
+            .zip(&estimates[0])
+            .map(|(c, e)| e.variance_ratio * value(0, c) * c.projected_solid_angle.powi(2))
+            .sum();
+        let noise = 2.0 * (error * error + counted).sqrt();
         self.columns.push(ColumnPeak {
             through,
             contrast: if around > 0.0 {
@@ -150,6 +156,19 @@ impl Split {
     /// Through transmittance [-] at a point of incidence: the interpolant, scaled to each column's mean.
     pub fn through(&self, columns: &Columns, p_in: DVec2) -> Rgb {
         self.map.at(columns, p_in)
+    }
+
+    /// Lowest and highest luminous transmittance [-] that the data allow at a point of incidence: the column's interval, and the
+    /// bend of the interpolant, which the data leave open within a column. Nominally 95 %.
+    pub fn interval(&self, columns: &Columns, p_in: DVec2) -> [f64; 2] {
+        let Some(column) = self.columns.get(columns.index(p_in)) else { return [0.0, 0.0] };
+        let mean = luminance(column.through);
+        if mean <= 0.0 {
+            return column.interval;
+        }
+        let here = luminance(self.through(columns, p_in));
+        let bend = self.map.bend(columns, p_in);
+        [(here * column.interval[0] / mean - bend).max(0.0), here * column.interval[1] / mean + bend]
     }
 
     /// Does any column have a peak?

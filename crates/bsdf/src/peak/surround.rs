@@ -43,6 +43,9 @@ pub struct Estimate {
     pub value: f64,
     /// Its standard error, from the misfit around it [1/sr].
     pub error: f64,
+    /// Variance of a cell's value over the value [1/sr], from the same misfit: with counted rays it is the same for bright and
+    /// dark cells.
+    pub variance_ratio: f64,
     /// Lowest and highest value over all lobe widths that fit about as well [1/sr].
     pub range: [f64; 2],
 }
@@ -99,13 +102,15 @@ pub fn estimate(
             let estimates = channels
                 .iter()
                 .map(|values| {
-                    let fits: Vec<_> = features.iter().map(|f| n.fit(values, f).candidates).collect();
+                    let fits: Vec<_> = features.iter().map(|f| n.fit(values, f)).collect();
                     (0..n.candidates.len())
                         .map(|c| {
-                            let possible = (0..widths.len()).filter(|&k| plausible(k)).map(|k| fits[k][c].0);
+                            let value = |k: usize| fits[k].candidates[c].0;
+                            let possible = (0..widths.len()).filter(|&k| plausible(k)).map(value);
                             Estimate {
-                                value: average(&|k| fits[k][c].0),
-                                error: average(&|k| fits[k][c].1),
+                                value: average(&value),
+                                error: average(&|k| fits[k].candidates[c].1),
+                                variance_ratio: average(&|k| fits[k].variance_ratio),
                                 range: [
                                     possible.clone().fold(f64::INFINITY, f64::min),
                                     possible.fold(0.0, f64::max),
@@ -141,6 +146,8 @@ fn cell_width(projected_solid_angle: f64) -> f64 {
 struct ColumnFit {
     /// Squared misfit relative to the data; none if there is nothing to fit.
     misfit: Option<f64>,
+    /// Variance over value [1/sr].
+    variance_ratio: f64,
     /// Value and standard error for each candidate.
     candidates: Vec<(f64, f64)>,
 }
@@ -208,7 +215,8 @@ impl Neighbourhood {
         }
         let [w, wg, wgg, wy, wgy, wyy] = m;
         if w <= 0.0 || wyy <= 0.0 {
-            return ColumnFit { misfit: None, candidates: vec![(0.0, 0.0); self.candidates.len()] };
+            let candidates = vec![(0.0, 0.0); self.candidates.len()];
+            return ColumnFit { misfit: None, variance_ratio: 0.0, candidates };
         }
         let determinant = w * wgg - wg * wg;
         let (mut base, mut height) = (wy / w, 0.0);
@@ -242,7 +250,7 @@ impl Neighbourhood {
                 (base + height * g, (variance * (1.0 + leverage.max(0.0))).sqrt())
             })
             .collect();
-        ColumnFit { misfit: Some(square / wyy), candidates }
+        ColumnFit { misfit: Some(square / wyy), variance_ratio: square / wy, candidates }
     }
 }
 
