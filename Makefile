@@ -20,6 +20,9 @@ RUST_FILES := Cargo.toml Cargo.lock $(shell find crates -type f)
 # PyO3 asks this interpreter, so that cargo and maturin build the same thing.
 export PYO3_PYTHON := $(BIN)/python
 export VIRTUAL_ENV := $(CURDIR)/$(VENV)
+# pip finds maturin here.
+export PATH := $(BIN):$(PATH)
+export PATH := $(BIN):$(PATH)
 unexport PYTHONHOME PYTHONPATH
 
 .PHONY: help build demo test test-rust test-python lint fmt bench docs lock clean
