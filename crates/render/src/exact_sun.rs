@@ -8,6 +8,7 @@
 //! passes and flat mirrors are followed, both ways at every pane, so reflections between parallel panes count as well.
 
 use crate::World;
+use crate::light::is_in_cone;
 use crate::material::{Arrival, Material};
 use crate::shapes::Ray;
 use crate::world::{Facing, Seen};
@@ -90,8 +91,7 @@ impl ExactSuns {
 
 impl Disc {
     fn contains(&self, direction: Vec3) -> bool {
-        let height = 0.5 * (direction - self.direction).length_squared();
-        height <= 2.0 * (self.angle_deg.to_radians() / 4.0).sin().powi(2)
+        is_in_cone(direction, self.direction, self.angle_deg)
     }
 }
 

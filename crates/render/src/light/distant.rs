@@ -8,6 +8,17 @@ use crate::SMALL_SOURCE_DEG;
 use crate::material::{Emitter, EmitterKind};
 use sunpeak_core::{Frame, Rgb, Vec3, cone_solid_angle, warp};
 
+/// Cones are closed: a ray along the horizon, between a sky and a ground of 180 degrees each, sees one of them whatever rounding
+/// does to it.
+const EDGE: f64 = 1e-9;
+
+/// Does the unit vector `direction` point into the cone of full angle `angle_deg` around `axis`?
+pub(crate) fn is_in_cone(direction: Vec3, axis: Vec3, angle_deg: f64) -> bool {
+    // 1 - cos from the chord, which keeps its digits for a disc as small as the sun's.
+    let height = 0.5 * (direction - axis).length_squared();
+    height <= 2.0 * (angle_deg.to_radians() / 4.0).sin().powi(2) * (1.0 + EDGE)
+}
+
 /// One `source`.
 #[derive(Clone, Debug)]
 pub(crate) struct Distant {
@@ -25,9 +36,7 @@ impl Distant {
     }
 
     pub fn contains(&self, direction: Vec3) -> bool {
-        // 1 - cos from the chord, which keeps its digits for a disc as small as the sun's.
-        let height = 0.5 * (direction - self.direction).length_squared();
-        height <= 2.0 * (self.angle_deg.to_radians() / 4.0).sin().powi(2)
+        is_in_cone(direction, self.direction, self.angle_deg)
     }
 
     /// Is it a sun: sampled one by one, and not left to chance?
@@ -174,6 +183,15 @@ mod tests {
         assert!(all.dome_radiance(sun) == Rgb::ZERO);
         assert!(all.seen(Vec3::Z).is_some() && all.seen(Vec3::NEG_Z).is_some());
         assert!(all.sample_sun(all.suns()[0], [0.3, 0.4]).is_some());
+    }
+
+    #[test]
+    fn there_is_no_gap_at_the_horizon() {
+        let all = sky_and_sun();
+        for i in 0..1000 {
+            let (sin, cos) = (0.01 * f64::from(i)).sin_cos();
+            assert!(all.seen(Vec3::new(cos, sin, 0.0)).is_some());
+        }
     }
 
     #[test]
