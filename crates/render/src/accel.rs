@@ -4,7 +4,7 @@
 //! precision, so the boxes are padded by more than single precision can lose. Coordinates are taken relative to the
 //! scene's centre, and a ray enters the hierarchy where it enters the scene's box: far origins cost no digits.
 
-use crate::shapes::{Analytic, Bounds, Ray, ShearedRay, Triangle};
+use crate::shapes::{Analytic, Bounds, COINCIDENT, Ray, ShearedRay, Triangle};
 use glam::{UVec2, Vec3A};
 use obvhs::{Boundable, BvhBuildParams, aabb::Aabb, cwbvh::CwBvh, cwbvh::builder::build_cwbvh};
 use std::collections::HashMap;
@@ -40,6 +40,10 @@ pub(crate) enum Geometry {
 pub(crate) struct Primitive {
     pub geometry: Geometry,
     pub object: u32,
+    /// Of surfaces at the same place an opaque one is hit…
+    pub is_opaque: bool,
+    /// … and of two alike (after one that shows its front) that of the higher rank.
+    pub rank: u32,
 }
 
 /// A crossing of a ray and an object.
@@ -88,20 +92,40 @@ impl Accel {
         &self.analytic[index as usize]
     }
 
-    /// Nearest crossing before `t_max`.
+    /// Nearest crossing before `t_max`. Of surfaces at the same place an opaque one wins, then one that shows its front, then the
+    /// one of higher rank, as in Radiance.
     pub fn closest(&self, ray: &Ray, t_max: f64) -> Option<Hit> {
-        let mut best: Option<Hit> = None;
-        self.crossings(ray, t_max, |hit| {
-            best = Some(hit);
-            Continue::UpTo(hit.t)
+        let mut best: Option<(Hit, &Primitive)> = None;
+        self.crossings(ray, t_max, |hit, primitive| {
+            let is_better = match &best {
+                None => true,
+                Some((old, _)) if hit.t < old.t - COINCIDENT => true,
+                Some((old, _)) if hit.object == old.object => hit.t < old.t,
+                Some((old, other)) => {
+                    self.precedence(&hit, primitive, ray) > self.precedence(old, other, ray)
+                }
+            };
+            if is_better {
+                best = Some((hit, primitive));
+            }
+            Continue::UpTo(best.map_or(t_max, |(best, _)| t_max.min(best.t + COINCIDENT)))
         });
-        best
+        best.map(|(hit, _)| hit)
+    }
+
+    /// Which of coincident surfaces is hit: the larger one.
+    fn precedence(&self, hit: &Hit, primitive: &Primitive, ray: &Ray) -> (bool, bool, u32) {
+        let normal = match &primitive.geometry {
+            Geometry::Triangle(t) => t.area_vector(),
+            Geometry::Analytic(i) => self.analytic[*i as usize].normal(ray.at(hit.t)),
+        };
+        (primitive.is_opaque, ray.direction.dot(normal) < 0.0, primitive.rank)
     }
 
     /// Calls `visit` for crossings before `t_max`, in no order, until it says stop. A crossing on the seam of two triangles
     /// may come twice.
     pub fn each_crossing(&self, ray: &Ray, t_max: f64, mut visit: impl FnMut(Hit) -> bool) {
-        self.crossings(ray, t_max, |hit| if visit(hit) { Continue::UpTo(t_max) } else { Continue::Stop });
+        self.crossings(ray, t_max, |hit, _| if visit(hit) { Continue::UpTo(t_max) } else { Continue::Stop });
     }
 
     /// Where the ray crosses one object, whatever stands before it.
@@ -116,11 +140,11 @@ impl Accel {
         nearest
     }
 
-    fn crossings(&self, ray: &Ray, t_max: f64, mut visit: impl FnMut(Hit) -> Continue) {
+    fn crossings<'a>(&'a self, ray: &Ray, t_max: f64, mut visit: impl FnMut(Hit, &'a Primitive) -> Continue) {
         let Some((enter, leave)) = self.bounds.and_then(|b| widened(b, self.padding).crossing(ray)) else {
             return;
         };
-        let t_min = NEAREST * ray.origin.abs().max_element().max(1.0);
+        let t_min = ray.start.max(NEAREST * ray.origin.abs().max_element().max(1.0));
         let start = enter.max(0.0);
         let mut limit = t_max.min(leave);
         let mut single = self.single_precision(ray, start, limit);
@@ -136,7 +160,7 @@ impl Accel {
                 };
                 for t in found {
                     if t > t_min && t < limit {
-                        match visit(Hit { t, object: primitive.object }) {
+                        match visit(Hit { t, object: primitive.object }, primitive) {
                             Continue::UpTo(t) => limit = t,
                             Continue::Stop => break 'search,
                         }
@@ -256,7 +280,7 @@ mod tests {
                 });
                 Geometry::Analytic(analytic.len() as u32 - 1)
             };
-            primitives.push(Primitive { geometry, object: i as u32 });
+            primitives.push(Primitive { geometry, object: i as u32, is_opaque: true, rank: 0 });
         }
         (primitives, analytic)
     }
@@ -294,7 +318,7 @@ mod tests {
                 8 => Vec3::Z,
                 _ => warp::uniform_sphere(s.next_2d()),
             };
-            let ray = Ray { origin, direction };
+            let ray = Ray::new(origin, direction);
             let expected = brute_force(&primitives, &analytic, &ray, t_min);
             let hit = accel.closest(&ray, f64::INFINITY);
             assert_eq!(hit.map(|h| (h.t, h.object)), expected.first().copied());
@@ -328,14 +352,17 @@ mod tests {
             inner_radius: 0.0,
             outer_radius: 5000.0,
         }));
-        primitives.push(Primitive { geometry: Geometry::Analytic(analytic.len() as u32 - 1), object: 100 });
+        primitives.push(Primitive {
+            geometry: Geometry::Analytic(analytic.len() as u32 - 1),
+            object: 100,
+            is_opaque: true,
+            rank: 0,
+        });
         let accel = Accel::build(primitives.clone(), analytic.clone()).expect("builds");
         for i in 0..2000 {
             let mut s = Sampler::new(8, i, 0);
-            let ray = Ray {
-                origin: 10.0 * Vec3::new(s.next_1d(), s.next_1d(), s.next_1d()),
-                direction: warp::uniform_sphere(s.next_2d()),
-            };
+            let origin = 10.0 * Vec3::new(s.next_1d(), s.next_1d(), s.next_1d());
+            let ray = Ray::new(origin, warp::uniform_sphere(s.next_2d()));
             let expected = brute_force(&primitives, &analytic, &ray, NEAREST * 10.0).first().copied();
             assert_eq!(accel.closest(&ray, f64::INFINITY).map(|h| (h.t, h.object)), expected);
         }
@@ -343,14 +370,21 @@ mod tests {
 
     fn stack(count: u32) -> Vec<Primitive> {
         let triangle = Triangle([Vec3::ZERO, Vec3::X, Vec3::Y]);
-        (0..count).map(|i| Primitive { geometry: Geometry::Triangle(triangle), object: i }).collect()
+        (0..count)
+            .map(|i| Primitive {
+                geometry: Geometry::Triangle(triangle),
+                object: i,
+                is_opaque: true,
+                rank: 0,
+            })
+            .collect()
     }
 
     #[test]
     fn surfaces_at_one_place_are_all_crossed() {
         let accel = Accel::build(stack(100), Vec::new()).expect("builds");
         let mut count = 0;
-        let ray = Ray { origin: Vec3::new(0.2, 0.2, 1.0), direction: Vec3::NEG_Z };
+        let ray = Ray::new(Vec3::new(0.2, 0.2, 1.0), Vec3::NEG_Z);
         accel.each_crossing(&ray, f64::INFINITY, |_| {
             count += 1;
             true
@@ -360,8 +394,35 @@ mod tests {
     }
 
     #[test]
+    fn of_coincident_surfaces_the_right_one_is_hit() {
+        let up = Triangle([Vec3::ZERO, Vec3::X, Vec3::Y]);
+        let down = Triangle([Vec3::ZERO, Vec3::Y, Vec3::X]);
+        let ray = Ray::new(Vec3::new(0.2, 0.2, 1.0), Vec3::NEG_Z);
+        let hit = |candidates: &[(Triangle, bool, u32)]| {
+            let piece = |(i, &(t, is_opaque, rank)): (usize, &(Triangle, bool, u32))| Primitive {
+                geometry: Geometry::Triangle(t),
+                object: i as u32,
+                is_opaque,
+                rank,
+            };
+            let accel =
+                Accel::build(candidates.iter().enumerate().map(piece).collect(), Vec::new()).expect("builds");
+            accel.closest(&ray, f64::INFINITY).expect("a hit").object
+        };
+        let below = Triangle(up.0.map(|v| v - Vec3::Z * 1e-7));
+        for (one, other) in [
+            ((up, false, 5), (down, true, 1)),
+            ((down, true, 5), (up, true, 1)),
+            ((up, true, 1), (up, true, 5)),
+            ((up, true, 1), (below, true, 5)),
+        ] {
+            assert_eq!((hit(&[one, other]), hit(&[other, one])), (1, 0), "{one:?} {other:?}");
+        }
+    }
+
+    #[test]
     fn an_empty_scene_is_missed() {
         let accel = Accel::build(Vec::new(), Vec::new()).expect("builds");
-        assert!(accel.closest(&Ray { origin: Vec3::ZERO, direction: Vec3::X }, f64::INFINITY).is_none());
+        assert!(accel.closest(&Ray::new(Vec3::ZERO, Vec3::X), f64::INFINITY).is_none());
     }
 }

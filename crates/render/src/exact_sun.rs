@@ -183,7 +183,7 @@ impl Chains<'_> {
         let Some([x, y]) = self.camera.project(direction) else { return Rgb::ZERO };
         let Some(ray) = self.camera.ray(x, y) else { return Rgb::ZERO };
         let chain = Chain {
-            ray: Ray { origin: ray.origin, direction },
+            ray: Ray::new(ray.origin, direction),
             reach: ray.max_distance,
             share: Rgb::ONE,
             surfaces: 0,
@@ -234,12 +234,12 @@ struct Chain {
 
 impl Chain {
     fn straight(&self, arrival: &Arrival, distance: f64, share: Rgb) -> Option<Self> {
-        let ray = Ray { origin: arrival.point, direction: self.ray.direction };
+        let ray = Ray::past(arrival.point, self.ray.direction);
         self.onwards(ray, self.reach - distance, share)
     }
 
     fn mirrored(&self, arrival: &Arrival, share: Rgb) -> Option<Self> {
-        let ray = Ray { origin: arrival.point, direction: arrival.mirrored() };
+        let ray = Ray::new(arrival.point, arrival.mirrored());
         self.onwards(ray, f64::INFINITY, share)
     }
 

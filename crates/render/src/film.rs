@@ -61,7 +61,7 @@ impl Film {
         let x = (column as f64 + u) / self.width as f64;
         let y = 1.0 - (row as f64 + v) / self.height as f64;
         let Some(ray) = self.camera.ray(x, y) else { return Rgb::ZERO };
-        let start = Ray { origin: ray.origin, direction: ray.direction };
+        let start = Ray::new(ray.origin, ray.direction);
         integrator.radiance(start, ray.max_distance, &mut sampler)
     }
 }

@@ -52,7 +52,7 @@ impl Integrator<'_> {
     /// Irradiance [W/m²] on the front of a surface element.
     pub fn irradiance(&self, point: Vec3, normal: Vec3, sampler: &mut Sampler) -> Rgb {
         let sensor = Met::sensor(point, normal);
-        let mut path = Path::from_camera(Ray { origin: point, direction: -normal }, f64::INFINITY);
+        let mut path = Path::from_camera(Ray::new(point, -normal), f64::INFINITY);
         let direct = self.direct(&path, &sensor, sampler);
         if !self.scatter(&mut path, &sensor, sampler) {
             return direct;

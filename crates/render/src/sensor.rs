@@ -21,7 +21,7 @@ pub fn trace_radiance(
     let sample = |item: usize, index| {
         let (origin, direction) = rays[item];
         let mut sampler = Sampler::new(options.seed, item as u64, index);
-        integrator.radiance(Ray { origin, direction }, f64::INFINITY, &mut sampler)
+        integrator.radiance(Ray::new(origin, direction), f64::INFINITY, &mut sampler)
     };
     Ok(estimate(rays.len(), options, control, sample)?.values)
 }

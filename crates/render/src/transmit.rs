@@ -4,10 +4,11 @@ use crate::World;
 use crate::accel::Hit;
 use crate::light::LightSample;
 use crate::material::{Alternate, Arrival, Dielectric, EmitterKind, Material};
-use crate::shapes::Ray;
+use crate::shapes::{COINCIDENT, Ray};
 use sunpeak_core::{Rgb, Vec3};
 
-/// Layers that are told apart on the fast way; more than that, or refraction, and the ray is followed step by step.
+/// Layers that are told apart on the fast way; more than that, refraction or coincident layers, and the ray is followed step by
+/// step.
 const FAST_LAYERS: usize = 8;
 
 /// Steps after which a followed ray is given up.
@@ -96,7 +97,7 @@ impl World {
                 (Some(so_far), Pass::Straight(share, only)) => match layers.add(&hit) {
                     Layer::New => Some(so_far.times(share, only)),
                     Layer::Known => Some(so_far),
-                    Layer::TooMany => None,
+                    Layer::Coincident | Layer::TooMany => None,
                 },
                 _ => None,
             };
@@ -120,7 +121,7 @@ impl World {
             match self.pass(&hit, &ray, target) {
                 Pass::Straight(share, only) => {
                     result = result.times(share, only);
-                    ray.origin = point;
+                    ray = Ray::past(point, ray.direction);
                 }
                 Pass::Refracted(solid) => {
                     let Some((direction, share)) = self.refracted(solid, &hit, &ray, target) else {
@@ -128,7 +129,7 @@ impl World {
                     };
                     result = result.times(share, true);
                     is_refracted = true;
-                    ray = Ray { origin: point, direction };
+                    ray = Ray::new(point, direction);
                 }
             }
             if result.is_blocked() {
@@ -195,16 +196,18 @@ struct Layers {
 
 enum Layer {
     New,
+    /// The same surface again.
     Known,
+    /// Another surface at the same place: only one of them counts.
+    Coincident,
     TooMany,
 }
 
 impl Layers {
     fn add(&mut self, hit: &Hit) -> Layer {
-        let is_same =
-            |&(object, t): &(u32, f64)| object == hit.object && (t - hit.t).abs() <= 1e-12 * t.abs();
-        if self.passed[..self.count].iter().any(is_same) {
-            return Layer::Known;
+        let is_here = |&&(_, t): &&(u32, f64)| (t - hit.t).abs() <= COINCIDENT;
+        if let Some((object, _)) = self.passed[..self.count].iter().find(is_here) {
+            return if *object == hit.object { Layer::Known } else { Layer::Coincident };
         }
         if self.count == FAST_LAYERS {
             return Layer::TooMany;

@@ -239,3 +239,15 @@ fn threads_change_nothing() {
     };
     assert_eq!(run(1), run(4));
 }
+
+#[test]
+fn of_two_panes_at_the_same_place_one_counts() {
+    let panes = "void glass one 0 0 3 0.96 0.96 0.96\nvoid glass two 0 0 3 0.96 0.96 0.96\n\
+                 one ring a 0 0 8 0 0 1 0 0 1 0 9\ntwo polygon b 0 0 12 -9 -9 1 9 -9 1 9 9 1 -9 9 1\n";
+    let world = world(&(sun(0.0).replace("0.533", "0.0533") + UNIFORM_SKY + panes));
+    let no_sky = RenderOptions { max_bounces: Some(0), ..samples(64) };
+    let value = irradiance(&world, Vec3::ZERO, UP, &no_sky);
+    assert_close("sun", value, 0.01 * sun_irradiance(0.0) * glass_transmittance(0.0), 1e-4);
+    let seen = radiance(&world, Vec3::ZERO, Vec3::new(0.0, 0.1, 1.0), &samples(1 << 14));
+    assert_close("sky", seen, glass_transmittance(0.1f64.atan()), 5e-3);
+}

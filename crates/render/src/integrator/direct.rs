@@ -51,7 +51,7 @@ impl Integrator<'_> {
         if value.total() == Rgb::ZERO || sample.radiance == Rgb::ZERO {
             return Rgb::ZERO;
         }
-        let ray = Ray { origin: receiver.arrival.point, direction: sample.direction };
+        let ray = Ray::new(receiver.arrival.point, sample.direction);
         let transmitted = self.world.transmitted(&ray, target);
         if transmitted.is_blocked() {
             return Rgb::ZERO;
@@ -89,7 +89,7 @@ impl Integrator<'_> {
         if sample.direction.dot(normal) <= 0.0 {
             return Rgb::ZERO;
         }
-        let ray = Ray { origin: receiver.arrival.point, direction: reflect(sample.direction, normal) };
+        let ray = Ray::new(receiver.arrival.point, reflect(sample.direction, normal));
         let Some(hit) = world.accel.crossing_of(&ray, mirror) else { return Rgb::ZERO };
         let value = receiver.smooth_value(&LightSample { direction: ray.direction, ..sample });
         if value.total() == Rgb::ZERO {
@@ -99,7 +99,7 @@ impl Integrator<'_> {
         if to_mirror.is_blocked() {
             return Rgb::ZERO;
         }
-        let onwards = Ray { origin: ray.at(hit), direction: sample.direction };
+        let onwards = Ray::new(ray.at(hit), sample.direction);
         let to_sun = world.transmitted(&onwards, &Target::sun(sun, &sample));
         let reflectance = world.mirror_reflectance(mirror);
         let factor = receiver.cosine(ray.direction) / sample.pdf;

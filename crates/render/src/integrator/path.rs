@@ -79,12 +79,12 @@ impl Path {
 
     /// A null event.
     pub fn go_straight(&mut self, point: Vec3, share: Rgb) {
-        self.ray.origin = point;
+        self.ray = Ray::past(point, self.ray.direction);
         self.throughput *= share;
     }
 
     pub fn mirror(&mut self, arrival: &Arrival, share: Rgb, is_flat: bool) {
-        self.ray = Ray { origin: arrival.point, direction: arrival.mirrored() };
+        self.ray = Ray::new(arrival.point, arrival.mirrored());
         self.reach = f64::INFINITY;
         self.throughput *= share;
         self.is_bent = true;
@@ -92,7 +92,7 @@ impl Path {
     }
 
     pub fn refract(&mut self, arrival: &Arrival, direction: Vec3, share: Rgb, material: Option<&Material>) {
-        self.ray = Ray { origin: arrival.point, direction };
+        self.ray = Ray::new(arrival.point, direction);
         self.throughput *= share;
         self.is_bent = true;
         self.is_distorted = true;
@@ -103,7 +103,7 @@ impl Path {
     }
 
     pub fn depart(&mut self, departure: Departure, direction: Vec3, weight: Rgb) {
-        self.ray = Ray { origin: departure.point, direction };
+        self.ray = Ray::new(departure.point, direction);
         self.reach = f64::INFINITY;
         self.throughput *= weight;
         self.departure = Some(departure);

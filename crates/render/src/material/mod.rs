@@ -130,12 +130,14 @@ impl Material {
         }
     }
 
-    /// Does it let clear light through (so that a mirror's alternate hides the mirror altogether)?
+    /// Does Radiance call it transparent? Of surfaces at the same place opaque ones are seen; a transparent alternate hides its
+    /// mirror altogether.
     pub fn is_transparent(&self) -> bool {
         match self {
             Self::Glass(_) | Self::Dielectric(_) => true,
             Self::Ward(m) => m.is_trans(),
-            Self::Table(_) | Self::Mirror(_) | Self::Emitter(_) => false,
+            Self::Table(m) => m.is_aperture,
+            Self::Mirror(_) | Self::Emitter(_) => false,
         }
     }
 }

@@ -14,6 +14,8 @@ use sunpeak_core::{Frame, Rgb, Vec3, luminance, warp};
 #[derive(Clone, Debug)]
 pub(crate) struct Table {
     pub bsdf: Arc<Bsdf>,
+    /// Is it an `aBSDF`?
+    pub is_aperture: bool,
     pub rule: PeakRule,
     /// Up vector, world axes.
     pub up: Vec3,

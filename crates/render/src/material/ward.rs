@@ -36,6 +36,7 @@ pub(crate) struct WardMaterial {
     specularity: f64,
     alpha2: f64,
     is_metal: bool,
+    is_trans: bool,
     transmissivity: f64,
     specular_transmission: f64,
     /// Factor that keeps rough transmission from giving out more than it gets, over the cosine.
@@ -58,7 +59,7 @@ impl WardMaterial {
 
     /// `trans`.
     pub fn trans(ward: &sunpeak_scene::Ward, transmissivity: f64, specular_transmission: f64) -> Self {
-        Self::new(ward, false, transmissivity, specular_transmission)
+        Self { is_trans: true, ..Self::new(ward, false, transmissivity, specular_transmission) }
     }
 
     fn new(
@@ -74,6 +75,7 @@ impl WardMaterial {
             specularity: ward.specularity,
             alpha2,
             is_metal,
+            is_trans: false,
             transmissivity,
             specular_transmission,
             transmission_bound: is_rough_trans.then(|| Box::new(transmission_bound(alpha2))),
@@ -81,7 +83,7 @@ impl WardMaterial {
     }
 
     pub fn is_trans(&self) -> bool {
-        self.transmissivity > 0.0
+        self.is_trans
     }
 
     /// Does it mirror?

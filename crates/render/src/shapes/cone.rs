@@ -111,7 +111,7 @@ mod tests {
             for _ in 0..300 {
                 let origin = Vec3::new(1.5, 2.2, 4.0) + 3.0 * warp::uniform_sphere(sampler.next_2d());
                 let aim = Vec3::new(1.5, 2.2, 4.0) + 0.7 * warp::uniform_sphere(sampler.next_2d());
-                let ray = Ray { origin, direction: (aim - origin).normalize() };
+                let ray = Ray::new(origin, (aim - origin).normalize());
                 let (steps, step) = (20_000, 6.0 / 20_000.0);
                 let mut marched = Vec::new();
                 for i in 0..steps {

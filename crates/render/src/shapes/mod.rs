@@ -20,14 +20,29 @@ pub(crate) type Crossings = [f64; 2];
 /// No crossing at all.
 pub(crate) const MISS: Crossings = [f64::INFINITY; 2];
 
-/// A ray: `direction` is a unit vector.
+/// Surfaces closer than this [m] are at the same place (Radiance, `FTINY`): one of them counts.
+pub(crate) const COINCIDENT: f64 = 1e-6;
+
+/// A ray.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ray {
     pub origin: Vec3,
+    /// Unit vector.
     pub direction: Vec3,
+    /// Nothing nearer to the origin than this is hit, nor is the surface that the ray leaves.
+    pub start: f64,
 }
 
 impl Ray {
+    pub fn new(origin: Vec3, direction: Vec3) -> Self {
+        Self { origin, direction, start: 0.0 }
+    }
+
+    /// From a point at which a surface was passed: others at the same place are passed with it.
+    pub fn past(point: Vec3, direction: Vec3) -> Self {
+        Self { origin: point, direction, start: COINCIDENT }
+    }
+
     pub fn at(&self, t: f64) -> Vec3 {
         self.origin + self.direction * t
     }
@@ -145,7 +160,7 @@ mod tests {
     #[test]
     fn a_box_is_crossed_where_it_stands() {
         let b = Bounds { min: Vec3::new(0.0, 0.0, 0.0), max: Vec3::new(1.0, 2.0, 3.0) };
-        let ray = |o: [f64; 3], d: [f64; 3]| Ray { origin: o.into(), direction: d.into() };
+        let ray = |o: [f64; 3], d: [f64; 3]| Ray::new(o.into(), d.into());
         assert_eq!(b.crossing(&ray([-1.0, 1.0, 1.0], [1.0, 0.0, 0.0])), Some((1.0, 2.0)));
         assert_eq!(b.crossing(&ray([-1.0, 2.5, 1.0], [1.0, 0.0, 0.0])), None);
         assert!(b.crossing(&ray([0.0, 0.0, 1.0], [0.0, 0.0, 1.0])).is_some());

@@ -177,7 +177,7 @@ mod tests {
             for _ in 0..3000 {
                 let [u, v] = sampler.next_2d();
                 let [target] = lift(&[[8.0 * u - 2.0, 6.0 * v - 2.0]])[..] else { unreachable!() };
-                let ray = Ray { origin: target - polygon.normal * 2.0, direction: polygon.normal };
+                let ray = Ray::new(target - polygon.normal * 2.0, polygon.normal);
                 let sheared = ShearedRay::new(&ray);
                 let by_triangles = triangles.iter().any(|t| t.crossing(&sheared).is_finite());
                 assert_eq!(by_triangles, polygon.crossings(&ray)[0].is_finite(), "at {u} {v}");

@@ -52,10 +52,10 @@ mod tests {
     fn a_ray_hits_between_the_radii_only() {
         let ring =
             Ring { center: Vec3::new(0.0, 0.0, 1.0), normal: Vec3::Z, inner_radius: 0.5, outer_radius: 1.0 };
-        let t = |x: f64| ring.crossings(&Ray { origin: Vec3::new(x, 0.0, 0.0), direction: Vec3::Z })[0];
+        let t = |x: f64| ring.crossings(&Ray::new(Vec3::new(x, 0.0, 0.0), Vec3::Z))[0];
         assert!(t(0.4).is_infinite() && t(1.1).is_infinite());
         assert_eq!(t(0.7), 1.0);
-        assert!(ring.crossings(&Ray { origin: Vec3::ZERO, direction: Vec3::X })[0].is_infinite());
+        assert!(ring.crossings(&Ray::new(Vec3::ZERO, Vec3::X))[0].is_infinite());
     }
 
     #[test]

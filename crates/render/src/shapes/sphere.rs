@@ -37,7 +37,7 @@ mod tests {
     #[test]
     fn crossings_lie_on_the_sphere() {
         let s = Sphere { center: Vec3::new(1.0, 2.0, 3.0), radius: 0.5, inward: false };
-        let ray = Ray { origin: Vec3::new(1.1, 2.2, -4.0), direction: Vec3::Z };
+        let ray = Ray::new(Vec3::new(1.1, 2.2, -4.0), Vec3::Z);
         let mut t = s.crossings(&ray);
         t.sort_by(f64::total_cmp);
         let half_chord = (0.25f64 - 0.05).sqrt();

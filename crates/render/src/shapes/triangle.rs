@@ -86,7 +86,7 @@ mod tests {
     use sunpeak_core::{Sampler, warp};
 
     fn ray(origin: Vec3, direction: Vec3) -> ShearedRay {
-        ShearedRay::new(&Ray { origin, direction: direction.normalize() })
+        ShearedRay::new(&Ray::new(origin, direction.normalize()))
     }
 
     #[test]

@@ -7,7 +7,7 @@ use crate::light::{Distant, DistantSources, Lamp, LampShape, Lamps};
 use crate::material::{
     Alternate, Dielectric, Emitter, EmitterKind, Glass, Material, MaterialId, Mirror, Table, WardMaterial,
 };
-use crate::shapes::{Analytic, Cone, Polygon, Ring, Sphere, Triangle};
+use crate::shapes::{Analytic, Cone, Polygon, Ring, Sphere};
 use std::{collections::HashMap, path::Path, sync::Arc};
 use sunpeak_bsdf::{Bsdf, PeakRule};
 use sunpeak_core::{Error, Frame, Location, Result, Vec3};
@@ -42,6 +42,8 @@ struct Compiler<'s> {
     sources: Vec<Distant>,
     lamps: Vec<Lamp>,
     mirrors: Vec<u32>,
+    /// Of each object: where its modifier stands in the scene. Of surfaces at the same place the later is seen.
+    ranks: Vec<u32>,
 }
 
 impl<'s> Compiler<'s> {
@@ -58,6 +60,7 @@ impl<'s> Compiler<'s> {
             sources: Vec::new(),
             lamps: Vec::new(),
             mirrors: Vec::new(),
+            ranks: Vec::new(),
         }
     }
 
@@ -114,10 +117,9 @@ impl<'s> Compiler<'s> {
         match polygon.triangulate() {
             Some(triangles) => {
                 self.add_lamp(object, material, LampShape::triangles(triangles.clone(), normal));
-                let piece = |t: Triangle| Primitive { geometry: Geometry::Triangle(t), object };
-                self.primitives.extend(triangles.into_iter().map(piece));
+                triangles.into_iter().for_each(|t| self.add_primitive(object, Geometry::Triangle(t)));
             }
-            None => self.add_primitive(object, Analytic::Polygon(polygon)),
+            None => self.add_shape(object, Analytic::Polygon(polygon)),
         }
         Ok(())
     }
@@ -142,13 +144,19 @@ impl<'s> Compiler<'s> {
         };
         let object = self.add_object(surface, material, facing)?;
         self.add_lamp(object, material, Some(lamp));
-        self.add_primitive(object, shape);
+        self.add_shape(object, shape);
         Ok(())
     }
 
-    fn add_primitive(&mut self, object: u32, shape: Analytic) {
-        self.primitives.push(Primitive { geometry: Geometry::Analytic(self.analytic.len() as u32), object });
+    fn add_shape(&mut self, object: u32, shape: Analytic) {
+        self.add_primitive(object, Geometry::Analytic(self.analytic.len() as u32));
         self.analytic.push(shape);
+    }
+
+    fn add_primitive(&mut self, object: u32, geometry: Geometry) {
+        let material = self.objects[object as usize].material;
+        let is_opaque = !self.materials[material.0 as usize].is_transparent();
+        self.primitives.push(Primitive { geometry, object, is_opaque, rank: self.ranks[object as usize] });
     }
 
     fn add_object(&mut self, surface: &Surface, material: MaterialId, facing: Facing) -> Result<u32> {
@@ -166,6 +174,7 @@ impl<'s> Compiler<'s> {
             (Material::Mirror(_), Facing::Flat(_)) => self.mirrors.push(object),
             _ => {}
         }
+        self.ranks.push(surface.modifier.map_or(0, |id| id.0 as u32));
         self.objects.push(Object { material, facing, lamp: None });
         Ok(object)
     }
@@ -312,6 +321,7 @@ impl<'s> Compiler<'s> {
         }
         Ok(Table {
             bsdf: self.bsdf(&said.file)?,
+            is_aperture: said.extract_peak,
             rule: if said.extract_peak { self.options.peak } else { PeakRule::Off },
             up: said.up,
             mirrored: said.mirrored,
