@@ -36,6 +36,17 @@ impl Distribution {
         distribution
     }
 
+    /// With a split that was found before; `split` gets the incident division.
+    pub fn with_known_split(
+        luminous: Table,
+        color: Option<[Vec<f32>; 2]>,
+        split: impl FnOnce(&Columns) -> Split,
+    ) -> Self {
+        let mut distribution = Self::new(luminous, color);
+        distribution.split = split(&distribution.columns);
+        distribution
+    }
+
     /// Luminous values.
     pub fn luminous(&self) -> &Table {
         &self.luminous

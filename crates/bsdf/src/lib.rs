@@ -15,6 +15,7 @@
 pub mod basis;
 mod bsdf;
 mod distribution;
+pub mod outline;
 pub mod peak;
 mod proposal;
 pub mod synthetic;

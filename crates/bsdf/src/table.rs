@@ -95,7 +95,20 @@ impl Table {
         }
     }
 
-    /// The value [1/sr] for a pair of points, and where it stands.
+    /// A table of the same cells with other values, in the order of [`Self::values`]; none if their number differs.
+    pub fn with_values(&self, values: Vec<f32>) -> Option<Self> {
+        if values.len() != self.values().len() {
+            return None;
+        }
+        Some(match self {
+            Self::Matrix(m) => {
+                Self::Matrix(Matrix { incident: m.incident.clone(), exiting: m.exiting.clone(), values })
+            }
+            Self::Tree(t) => Self::Tree(t.map_leaves(|leaf, _| values[leaf.index])),
+        })
+    }
+
+    /// Where the value [1/sr] for a pair of points stands.
     pub fn index(&self, p_in: DVec2, p_out: DVec2) -> usize {
         match self {
             Self::Matrix(m) => m.incident.index(p_in) * m.exiting.len() + m.exiting.index(p_out),

@@ -1,26 +1,59 @@
 //! Writing a BSDF as LBNL XML (schema 1.4, the form that Radiance and WINDOW read).
 //!
-//! Numbers are written in the fewest digits that give the same 32-bit value back.
+//! Numbers are written in the fewest digits that give the same 32-bit value back. Colour goes beside the luminous values as
+//! Radiance reads it: CIE X and Z of matrices, u' and v' of trees.
 
 use crate::{
     basis::AngleBasis,
     bsdf::{Bsdf, Mode},
+    distribution::Distribution,
     table::{Matrix, Table},
     tree::Tree,
 };
 use std::fmt::Write;
 use sunpeak_core::Vec3;
 
+/// u' and v' of equal-energy white, for cells without light (CIE 15).
+const WHITE_UV: [f64; 2] = [4.0 / 19.0, 9.0 / 19.0];
+
+/// One side and mode as it is written.
+pub(crate) struct Component<'a> {
+    /// `Transmission Front` …
+    pub direction: &'static str,
+    pub luminous: &'a Table,
+    /// CIE X and Z in the same cells.
+    pub color: Option<&'a [Vec<f32>; 2]>,
+}
+
+/// Which cells a tree is written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Leaves {
+    /// Neighbours of the same value together: the shortest text.
+    Merged,
+    /// As they are: whoever reads it finds the same cells.
+    Kept,
+}
+
 impl Bsdf {
-    /// The text of an LBNL XML file with the luminous tables of this BSDF.
+    /// The text of an LBNL XML file with the tables of this BSDF.
     pub fn to_xml(&self) -> String {
+        let own = self.own_distributions();
+        let components: Vec<Component> = own
+            .into_iter()
+            .map(|(direction, d)| Component { direction, luminous: d.luminous(), color: d.color() })
+            .collect();
+        self.xml_of(&components, Leaves::Merged)
+    }
+
+    /// The text of an LBNL XML file with other tables under this BSDF's name.
+    pub(crate) fn xml_of(&self, components: &[Component], leaves: Leaves) -> String {
         let mut out = String::new();
         // Writing to a string cannot fail.
-        let _ = self.write(&mut out);
+        let _ = self.write(&mut out, components, leaves);
         out
     }
 
-    fn write(&self, out: &mut String) -> std::fmt::Result {
+    fn write(&self, out: &mut String, components: &[Component], leaves: Leaves) -> std::fmt::Result {
         writeln!(out, r#"<?xml version="1.0" encoding="UTF-8"?>"#)?;
         writeln!(
             out,
@@ -36,10 +69,9 @@ impl Bsdf {
             "\t<DataDefinition>\n\t\t<IncidentDataStructure>{}</IncidentDataStructure>",
             self.structure
         )?;
-        let tables = self.tables();
         let mut bases: Vec<&AngleBasis> = Vec::new();
-        for (_, table) in &tables {
-            if let Table::Matrix(m) = table {
+        for component in components {
+            if let Table::Matrix(m) = component.luminous {
                 for basis in [&*m.incident, &*m.exiting] {
                     if !bases.iter().any(|b| b.name() == basis.name()) {
                         bases.push(basis);
@@ -51,14 +83,14 @@ impl Bsdf {
             write_basis(out, basis)?;
         }
         writeln!(out, "\t</DataDefinition>")?;
-        for (direction, table) in tables {
-            write_block(out, direction, table)?;
+        for component in components {
+            write_component(out, component, leaves)?;
         }
         writeln!(out, "</Layer>\n</Optical>\n</WindowElement>")
     }
 
-    /// Tables by the file's names: what the frame's back meets is the file's front.
-    fn tables(&self) -> Vec<(&'static str, &Table)> {
+    /// Distributions by the file's names: what the frame's back meets is the file's front.
+    pub(crate) fn own_distributions(&self) -> Vec<(&'static str, &Distribution)> {
         let named = [
             ("Transmission Front", -Vec3::Z, Mode::Transmission),
             ("Transmission Back", Vec3::Z, Mode::Transmission),
@@ -71,7 +103,7 @@ impl Bsdf {
                 let oriented = self.distribution(w_in, mode)?;
                 // A transmission that only serves this side by reciprocity stands under its own name.
                 let own = mode == Mode::Reflection || !oriented.reversed;
-                own.then(|| (name, oriented.distribution.luminous()))
+                own.then(|| (name, &*oriented.distribution))
             })
             .collect()
     }
@@ -96,14 +128,56 @@ fn write_basis(out: &mut String, basis: &AngleBasis) -> std::fmt::Result {
     writeln!(out, "\t\t</AngleBasis>")
 }
 
-fn write_block(out: &mut String, direction: &str, table: &Table) -> std::fmt::Result {
+fn write_component(out: &mut String, component: &Component, leaves: Leaves) -> std::fmt::Result {
+    let Component { direction, luminous, color } = component;
+    // Equal luminous values may have different colours: then no cells are put together.
+    let leaves = if color.is_some() { Leaves::Kept } else { leaves };
+    write_block(out, "Visible", direction, luminous, leaves)?;
+    let Some([x, z]) = color else { return Ok(()) };
+    let with = |values: Vec<f32>| luminous.with_values(values);
+    let bands = match luminous {
+        Table::Matrix(_) => [("CIE-X", with(x.clone())), ("CIE-Z", with(z.clone()))],
+        Table::Tree(_) => {
+            let [u, v] = chromaticity(luminous.values(), x, z);
+            [("CIE-u", with(u)), ("CIE-v", with(v))]
+        }
+    };
+    for (band, table) in bands {
+        if let Some(table) = table {
+            write_block(out, band, direction, &table, leaves)?;
+        }
+    }
+    Ok(())
+}
+
+/// u' = 4X / (X + 15Y + 3Z) and v' = 9Y / (same) of each cell (CIE 15).
+fn chromaticity(y: &[f32], x: &[f32], z: &[f32]) -> [Vec<f32>; 2] {
+    let each = y.iter().zip(x).zip(z).map(|((&y, &x), &z)| {
+        let [x, y, z] = [x, y, z].map(f64::from);
+        let sum = x + 15.0 * y + 3.0 * z;
+        if y > 0.0 { [4.0 * x / sum, 9.0 * y / sum] } else { WHITE_UV }.map(|v| v as f32)
+    });
+    let (u, v) = each.map(|[u, v]| (u, v)).unzip();
+    [u, v]
+}
+
+fn write_block(
+    out: &mut String,
+    band: &str,
+    direction: &str,
+    table: &Table,
+    leaves: Leaves,
+) -> std::fmt::Result {
+    let detector = match band {
+        "CIE-X" => "ASTM E308 1931 X.dsp",
+        "CIE-Z" => "ASTM E308 1931 Z.dsp",
+        _ => "ASTM E308 1931 Y.dsp",
+    };
+    let kind = if direction.starts_with("Reflection") { "BRDF" } else { "BTDF" };
     writeln!(out, "\t<WavelengthData>\n\t\t<LayerNumber>System</LayerNumber>")?;
-    writeln!(out, "\t\t<Wavelength unit=\"Integral\">Visible</Wavelength>")?;
+    writeln!(out, "\t\t<Wavelength unit=\"Integral\">{band}</Wavelength>")?;
     writeln!(out, "\t\t<SourceSpectrum>CIE Illuminant D65 1nm.ssp</SourceSpectrum>")?;
-    writeln!(
-        out,
-        "\t\t<DetectorSpectrum>ASTM E308 1931 Y.dsp</DetectorSpectrum>\n\t\t<WavelengthDataBlock>"
-    )?;
+    writeln!(out, "\t\t<DetectorSpectrum>{detector}</DetectorSpectrum>\n\t\t<WavelengthDataBlock>")?;
     writeln!(out, "\t\t\t<WavelengthDataDirection>{direction}</WavelengthDataDirection>")?;
     match table {
         Table::Matrix(m) => {
@@ -112,10 +186,10 @@ fn write_block(out: &mut String, direction: &str, table: &Table) -> std::fmt::Re
         }
         Table::Tree(_) => writeln!(out, "\t\t\t<AngleBasis>LBNL/Shirley-Chiu</AngleBasis>")?,
     }
-    writeln!(out, "\t\t\t<ScatteringDataType>BTDF</ScatteringDataType>\n\t\t\t<ScatteringData>")?;
+    writeln!(out, "\t\t\t<ScatteringDataType>{kind}</ScatteringDataType>\n\t\t\t<ScatteringData>")?;
     match table {
         Table::Matrix(m) => write_matrix(out, m)?,
-        Table::Tree(t) => write_node(out, t, [0.0; 4], 1.0)?,
+        Table::Tree(t) => write_node(out, t, leaves, [0.0; 4], 1.0)?,
     }
     writeln!(out, "\t\t\t</ScatteringData>\n\t\t</WavelengthDataBlock>\n\t</WavelengthData>")
 }
@@ -131,10 +205,16 @@ fn write_matrix(out: &mut String, m: &Matrix) -> std::fmt::Result {
     Ok(())
 }
 
-/// A region of the tree: one value if it is uniform, a grid if it is small and regular, else its halves.
-fn write_node(out: &mut String, tree: &Tree, corner: [f64; 4], size: f64) -> std::fmt::Result {
+/// A region of the tree: one value if it is uniform (or a cell), a grid if it is small and regular, else its halves.
+fn write_node(
+    out: &mut String,
+    tree: &Tree,
+    leaves: Leaves,
+    corner: [f64; 4],
+    size: f64,
+) -> std::fmt::Result {
     let region = tree.region(corner, size);
-    if let Some(value) = region.uniform {
+    if let Some(value) = region.uniform.filter(|_| leaves == Leaves::Merged || region.smallest >= size) {
         return writeln!(out, "{{{value:e}}}");
     }
     let side = (size / region.smallest).round() as usize;
@@ -156,7 +236,7 @@ fn write_node(out: &mut String, tree: &Tree, corner: [f64; 4], size: f64) -> std
         for (d, x) in at.iter_mut().enumerate().take(tree.rank()) {
             *x += size / 2.0 * (child >> d & 1) as f64;
         }
-        write_node(out, tree, at, size / 2.0)?;
+        write_node(out, tree, leaves, at, size / 2.0)?;
     }
     writeln!(out, "}}")
 }

@@ -33,6 +33,11 @@ pub fn xyz_to_rgb(xyz: DVec3) -> Rgb {
     rgb_to_xyz_matrix().inverse() * xyz
 }
 
+/// Radiance's RGB to CIE XYZ: the inverse of [`xyz_to_rgb`].
+pub fn rgb_to_xyz(rgb: Rgb) -> DVec3 {
+    rgb_to_xyz_matrix() * rgb
+}
+
 fn rgb_to_xyz_matrix() -> DMat3 {
     let primary = |x: f64, y: f64| DVec3::new(x / y, 1.0, (1.0 - x - y) / y);
     let primaries = DMat3::from_cols(primary(0.640, 0.330), primary(0.290, 0.600), primary(0.150, 0.060));
@@ -48,6 +53,12 @@ mod tests {
     fn white_keeps_its_luminance() {
         assert!((luminance_cd_m2(gray(1.0)) - 179.0).abs() < 1e-9);
         assert!((xyz_to_rgb(DVec3::splat(0.4)) - gray(0.4)).length() < 1e-12);
+    }
+
+    #[test]
+    fn there_and_back_is_the_same_colour() {
+        let rgb = DVec3::new(0.3, 0.01, 2.0);
+        assert!((xyz_to_rgb(rgb_to_xyz(rgb)) - rgb).length() < 1e-12);
     }
 
     #[test]

@@ -11,7 +11,7 @@ mod sampler;
 mod transform;
 pub mod warp;
 
-pub use color::{LUMINOUS_EFFICACY, Rgb, gray, luminance, luminance_cd_m2, xyz_to_rgb};
+pub use color::{LUMINOUS_EFFICACY, Rgb, gray, luminance, luminance_cd_m2, rgb_to_xyz, xyz_to_rgb};
 pub use control::Control;
 pub use error::{Error, Location, Result};
 pub use frame::Frame;

@@ -141,6 +141,29 @@ impl Split {
         self.first.push(self.overlay.len() as u32);
     }
 
+    /// What was found before: for each column its peak, and the cells that are lowered, with their surround [1/sr].
+    pub fn from_parts(division: &Columns, parts: Vec<(ColumnPeak, Vec<(usize, Rgb)>)>) -> Self {
+        let mut split =
+            Self { columns: Vec::new(), first: vec![0], overlay: Vec::new(), map: ThroughMap::none() };
+        for (column, cells) in parts {
+            split.overlay.extend(cells.into_iter().map(|(index, surround)| Overlay {
+                index: index as u32,
+                surround: surround.as_vec3().to_array(),
+            }));
+            split.first.push(split.overlay.len() as u32);
+            split.columns.push(column);
+        }
+        split.map = ThroughMap::new(division, split.columns.iter().map(|c| c.through).collect());
+        split
+    }
+
+    /// The cells of a column that are lowered to their surround [1/sr].
+    pub fn overlay(&self, column: usize) -> impl Iterator<Item = (usize, Rgb)> {
+        let bound = |c: usize| self.first.get(c).map_or(0, |&at| at as usize);
+        let range = bound(column)..bound(column + 1).max(bound(column));
+        self.overlay[range].iter().map(|c| (c.index as usize, DVec3::from(glam::Vec3::from(c.surround))))
+    }
+
     /// What was found, column by column; empty for reflection.
     pub fn columns(&self) -> &[ColumnPeak] {
         &self.columns
