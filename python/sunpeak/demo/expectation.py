@@ -20,7 +20,7 @@ class Expectation:
     fabric_transmittance: float
     """Straight through the fabric [-]."""
     glazing_transmittance: float
-    """Straight through both panes [-]."""
+    """Through both panes, the light that is mirrored between them included [-]."""
     sun_cd_m2: float
     """The sun's disc outside."""
 
@@ -39,13 +39,23 @@ def expectation(sky: Sky) -> Expectation:
     return Expectation(
         incidence_deg=math.degrees(math.acos(cosine)),
         fabric_transmittance=fabric.through_transmittance(math.acos(cosine)),
-        glazing_transmittance=pane_transmittance(room.PANE_TRANSMISSIVITY, cosine) ** len(room.PANES_Y_M),
+        glazing_transmittance=glazing_transmittance(room.PANE_TRANSMISSIVITY, cosine, len(room.PANES_Y_M)),
         sun_cd_m2=float(luminance_cd_m2(radiance)),
     )
 
 
-def pane_transmittance(transmissivity: float, cosine: float, index: float = GLASS_INDEX) -> float:
-    """Transmittance [-] of a clear pane, all reflections inside it included, for unpolarised light.
+def glazing_transmittance(transmissivity: float, cosine: float, panes: int) -> float:
+    """Transmittance [-] of parallel panes, all reflections between them included (geometric series)."""
+    transmittance, reflectance = pane(transmissivity, cosine)
+    through, back = transmittance, reflectance
+    for _ in range(panes - 1):
+        between = 1.0 - back * reflectance
+        through, back = through * transmittance / between, reflectance + transmittance**2 * back / between
+    return through
+
+
+def pane(transmissivity: float, cosine: float, index: float = GLASS_INDEX) -> tuple[float, float]:
+    """Transmittance and reflectance [-] of a clear pane, all reflections inside it included, for unpolarised light.
 
     `transmissivity` is that of one crossing at normal incidence; the way through the pane grows with 1 / cos of the
     refracted angle. Fresnel's equations; the two polarisations pass the pane apart (Born and Wolf, section 1.6).
@@ -54,4 +64,6 @@ def pane_transmittance(transmissivity: float, cosine: float, index: float = GLAS
     crossing: float = transmissivity ** (1.0 / refracted)
     across = ((cosine - index * refracted) / (cosine + index * refracted)) ** 2
     along = ((index * cosine - refracted) / (index * cosine + refracted)) ** 2
-    return sum((1.0 - r) ** 2 * crossing / (1.0 - (r * crossing) ** 2) for r in (across, along)) / 2.0
+    transmittance = sum((1.0 - r) ** 2 * crossing / (1.0 - (r * crossing) ** 2) for r in (across, along)) / 2.0
+    reflectance = sum(r + r * ((1.0 - r) * crossing) ** 2 / (1.0 - (r * crossing) ** 2) for r in (across, along)) / 2.0
+    return transmittance, reflectance

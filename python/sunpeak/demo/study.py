@@ -37,7 +37,7 @@ class Plan:
 
     folder: Path
     size: tuple[int, int] = (400, 400)
-    samples: int = 32
+    samples: int = 16
     threads: int | None = None
     bases: tuple[str, ...] = fabric.BASES
 
@@ -59,7 +59,8 @@ def cases(plan: Plan, report: Reporter = lambda _: None) -> Iterator[Case]:
         for peak in RULES:
             start = time.monotonic()
             world = World.compile(scene, peak)
-            progress = report(f"{basis}, peak {peak}") or False
+            reported = report(f"{basis}, peak {peak}")
+            progress: Progress = False if reported is None else reported
 
             def take(view: View, size: tuple[int, int], world: World = world, progress: Progress = progress) -> Picture:
                 return render(
