@@ -22,6 +22,11 @@
 //! through any number of layers, times what each lets through; sampled paths go on in proportion. A source that is met behind
 //! such layers counts in full only on a chain that is straight or mirrored all the way from the camera.
 //!
+//! # Behind shades
+//! Where a scene has shades (surfaces of a BSDF table or of `trans`), diffuse surfaces draw part of their directions towards them
+//! and around the suns: light that a shade scatters is found by paths alone. Light that passes a table's peak from an emitter is left
+//! to shadow rays, which find it better than the few sampled paths that go straight.
+//!
 //! # What is left out
 //! A sun (a `source` narrower than [`SMALL_SOURCE_DEG`]) that a scattered path meets by way of a mirror or a solid of glass does
 //! not count: it would be a firefly. Instead, planar `mirror`s make virtual suns, and shadow rays to suns are refracted by
@@ -44,6 +49,7 @@
 mod accel;
 mod exact_sun;
 mod film;
+mod guide;
 mod integrator;
 mod light;
 mod material;

@@ -4,6 +4,7 @@ mod compile;
 
 use crate::WorldOptions;
 use crate::accel::{Accel, Hit};
+use crate::guide::Guide;
 use crate::light::{DistantSources, Lamps};
 use crate::material::{Alternate, Arrival, Emitter, EmitterKind, Material, MaterialId};
 use crate::shapes::Ray;
@@ -22,6 +23,8 @@ pub struct World {
     /// Objects that are planar mirrors.
     pub(crate) mirrors: Vec<u32>,
     pub(crate) rule: PeakRule,
+    /// Where diffuse surfaces look for light, if there are shades.
+    pub(crate) guide: Option<Guide>,
 }
 
 /// A surface of the scene.

@@ -6,7 +6,7 @@
 use super::{Bounds, Crossings, MISS, Ray, Triangle};
 use sunpeak_core::Vec3;
 
-/// How far the triangles' area may be from the polygon's, relative, before we call the triangulation a failure.
+/// How far the triangles' area may be from the polygon's, relative, before the triangulation counts as a failure.
 const AREA_TOLERANCE: f64 = 1e-6;
 
 /// A polygon is a line if its area is below this share of its extent squared: what rounding leaves of collinear points.
@@ -46,6 +46,18 @@ pub(crate) fn area_vector(vertices: &[Vec3]) -> Vec3 {
     0.5 * edges.map(|(&a, &b)| (a - origin).cross(b - origin)).sum::<Vec3>()
 }
 
+/// Where the holes begin among the vertices of all rings.
+fn ring_starts(outline: &[usize], holes: &[Vec<usize>]) -> Vec<usize> {
+    let lengths = std::iter::once(outline.len()).chain(holes.iter().map(Vec::len));
+    lengths
+        .scan(0, |sum, length| {
+            *sum += length;
+            Some(*sum)
+        })
+        .take(holes.len())
+        .collect()
+}
+
 impl Polygon {
     /// `None` if it has no area.
     pub fn new(vertices: Vec<Vec3>) -> Option<Self> {
@@ -63,13 +75,52 @@ impl Polygon {
         if let [a, b, c] = self.vertices[..] {
             return Some(vec![Triangle([a, b, c])]);
         }
-        let flat: Vec<[f64; 2]> = self.vertices.iter().map(|&v| self.projection.apply(v)).collect();
-        let mut indices: Vec<usize> = Vec::new();
-        earcut::Earcut::new().earcut(flat, &[], &mut indices);
-        let corners = |three: &[usize]| Triangle([three[0], three[1], three[2]].map(|i| self.vertices[i]));
+        let mut rings = self.rings();
+        rings.sort_by(|a, b| self.ring_area(b).abs().total_cmp(&self.ring_area(a).abs()));
+        let (outline, holes) = rings.split_first()?;
+        let flat = rings.iter().flatten().map(|&i| self.flat(i));
+        let starts = ring_starts(outline, holes);
+        let mut corners: Vec<usize> = Vec::new();
+        earcut::Earcut::new().earcut(flat, &starts, &mut corners);
+        let indices: Vec<usize> = rings.concat();
+        let triangle =
+            |three: &[usize]| Triangle([three[0], three[1], three[2]].map(|i| self.vertices[indices[i]]));
         let triangles: Vec<Triangle> =
-            indices.chunks_exact(3).map(corners).map(|t| self.oriented(t)).collect();
-        self.is_covered_by(&triangles).then_some(triangles)
+            corners.chunks_exact(3).map(triangle).map(|t| self.oriented(t)).collect();
+        let covered =
+            self.ring_area(outline).abs() - holes.iter().map(|h| self.ring_area(h).abs()).sum::<f64>();
+        self.is_covered_by(&triangles, covered).then_some(triangles)
+    }
+
+    fn flat(&self, vertex: usize) -> [f64; 2] {
+        self.projection.apply(self.vertices[vertex])
+    }
+
+    /// The outline taken apart where it comes back to a place: the outer ring and, cut off their seams, the holes. (Holes
+    /// may run either way round: what is inside is told by the even-odd rule.)
+    fn rings(&self) -> Vec<Vec<usize>> {
+        let mut rings = Vec::new();
+        let mut path: Vec<usize> = Vec::new();
+        for vertex in 0..self.vertices.len() {
+            let place = self.vertices[vertex];
+            if let Some(start) = path.iter().position(|&i| self.vertices[i] == place) {
+                rings.push(path.split_off(start));
+            }
+            path.push(vertex);
+        }
+        rings.push(path);
+        rings.retain(|ring| ring.len() >= 3);
+        rings
+    }
+
+    /// Area of a ring in the projection, positive if it turns counter-clockwise.
+    fn ring_area(&self, ring: &[usize]) -> f64 {
+        let next = ring.iter().cycle().skip(1);
+        let cross = |(&i, &j): (&usize, &usize)| {
+            let ([ax, ay], [bx, by]) = (self.flat(i), self.flat(j));
+            ax * by - ay * bx
+        };
+        0.5 * ring.iter().zip(next).map(cross).sum::<f64>()
     }
 
     fn oriented(&self, t: Triangle) -> Triangle {
@@ -77,10 +128,16 @@ impl Polygon {
         if t.area_vector().dot(self.normal) < 0.0 { Triangle([a, c, b]) } else { t }
     }
 
-    fn is_covered_by(&self, triangles: &[Triangle]) -> bool {
-        let whole = area_vector(&self.vertices).length();
-        let sum: f64 = triangles.iter().map(Triangle::area).sum();
-        (sum - whole).abs() <= AREA_TOLERANCE * whole
+    /// Do the triangles add up to this area in the projection, and lie inside?
+    fn is_covered_by(&self, triangles: &[Triangle], area: f64) -> bool {
+        let flat_area = |t: &Triangle| {
+            let [[ax, ay], [bx, by], [cx, cy]] = t.0.map(|v| self.projection.apply(v));
+            0.5 * ((bx - ax) * (cy - ay) - (by - ay) * (cx - ax)).abs()
+        };
+        let sum: f64 = triangles.iter().map(flat_area).sum();
+        let middle = |t: &Triangle| (t.0[0] + t.0[1] + t.0[2]) / 3.0;
+        (sum - area).abs() <= AREA_TOLERANCE * area
+            && triangles.iter().all(|t| flat_area(t) <= AREA_TOLERANCE * area || self.contains(middle(t)))
     }
 
     /// Even-odd rule in the plane (Haines 1994, "Point in Polygon Strategies", Graphics Gems IV).
@@ -136,6 +193,23 @@ mod tests {
         ])
     }
 
+    /// A wall that begins at the seam (from a tutorial's room).
+    fn wall() -> Vec<Vec3> {
+        let (left, right) = (-0.178262, 6.274262);
+        lift(&[
+            [left, 3.055937],
+            [0.0, 2.4384],
+            [0.0, 0.9144],
+            [6.096, 0.9144],
+            [6.096, 2.4384],
+            [0.0, 2.4384],
+            [left, 3.055937],
+            [left, 0.0],
+            [right, 0.0],
+            [right, 3.055937],
+        ])
+    }
+
     fn two_holes() -> Vec<Vec3> {
         lift(&[
             [0.0, 0.0],
@@ -168,7 +242,8 @@ mod tests {
 
     #[test]
     fn triangles_cover_what_the_even_odd_rule_covers() {
-        for outline in [frame(), two_holes(), star(), lift(&[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]])]
+        for outline in
+            [frame(), wall(), two_holes(), star(), lift(&[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]])]
         {
             let polygon = Polygon::new(outline).expect("has an area");
             let triangles = polygon.triangulate().expect("can be cut");

@@ -3,11 +3,12 @@
 use super::{Facing, Object, World};
 use crate::WorldOptions;
 use crate::accel::{Accel, Geometry, Primitive};
+use crate::guide::Guide;
 use crate::light::{Distant, DistantSources, Lamp, LampShape, Lamps};
 use crate::material::{
     Alternate, Dielectric, Emitter, EmitterKind, Glass, Material, MaterialId, Mirror, Table, WardMaterial,
 };
-use crate::shapes::{Analytic, Cone, Polygon, Ring, Sphere};
+use crate::shapes::{Analytic, Cone, Polygon, Ring, Sphere, Triangle};
 use std::{collections::HashMap, path::Path, sync::Arc};
 use sunpeak_bsdf::{Bsdf, PeakRule};
 use sunpeak_core::{Error, Frame, Location, Result, Vec3};
@@ -42,6 +43,7 @@ struct Compiler<'s> {
     sources: Vec<Distant>,
     lamps: Vec<Lamp>,
     mirrors: Vec<u32>,
+    shades: Vec<Triangle>,
     /// Of each object: where its modifier stands in the scene. Of surfaces at the same place the later is seen.
     ranks: Vec<u32>,
 }
@@ -60,19 +62,23 @@ impl<'s> Compiler<'s> {
             sources: Vec::new(),
             lamps: Vec::new(),
             mirrors: Vec::new(),
+            shades: Vec::new(),
             ranks: Vec::new(),
         }
     }
 
     fn finish(self) -> Result<World> {
+        let distant = DistantSources::new(self.sources);
+        let suns = distant.suns().iter().map(|&sun| distant.get(sun).direction).collect();
         Ok(World {
             accel: Accel::build(self.primitives, self.analytic)?,
             objects: self.objects,
             materials: self.materials,
-            distant: DistantSources::new(self.sources),
+            distant,
             lamps: Lamps::new(self.lamps),
             mirrors: self.mirrors,
             rule: self.options.peak,
+            guide: Guide::new(self.shades, suns),
         })
     }
 
@@ -117,6 +123,9 @@ impl<'s> Compiler<'s> {
         match polygon.triangulate() {
             Some(triangles) => {
                 self.add_lamp(object, material, LampShape::triangles(triangles.clone(), normal));
+                if self.materials[material.0 as usize].is_shade() {
+                    self.shades.extend(&triangles);
+                }
                 triangles.into_iter().for_each(|t| self.add_primitive(object, Geometry::Triangle(t)));
             }
             None => self.add_shape(object, Analytic::Polygon(polygon)),
