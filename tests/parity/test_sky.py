@@ -59,3 +59,18 @@ def test_the_sky_gives_its_diffuse_illuminance(name: str, radiance: Radiance, tm
     seen = radiance.rtrace(octree, np.hstack([np.zeros_like(towards), towards]), "-ab", "0")
     illuminance = 4 * np.pi / count * (luminance(seen) * towards[:, 2]).sum()
     assert illuminance == pytest.approx(sky.diffuse_horizontal_lux, rel=3e-3)
+
+
+@pytest.mark.parametrize("name", ["perez hazy", "clear", "overcast"])
+def test_sensors_under_the_open_sky(name: str, radiance: Radiance, tmp_path) -> None:
+    """Irradiance on surfaces of any tilt, to 0.5 % of the integral of what `rtrace` sees."""
+    sky = SKIES[name]
+    text = "void brightfunc" + sky.to_radiance().split("void brightfunc")[1]
+    octree = radiance.octree(tmp_path / "sky.oct", text=text)
+    towards = directions(60_000)
+    seen = luminance(radiance.rtrace(octree, np.hstack([np.zeros_like(towards), towards]), "-ab", "0"))
+    normals = directions(20)
+    cosines = np.maximum(normals @ towards.T, 0.0)
+    expected = 4 * np.pi / len(towards) * (cosines @ seen)
+    lit = sp.trace(sp.Scene.parse(text), np.zeros_like(normals), normals, irradiance=True, samples=16384)
+    np.testing.assert_allclose(luminance(lit), expected, rtol=5e-3)
