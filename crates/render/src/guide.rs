@@ -145,28 +145,61 @@ fn around_pdf(sun: Vec3, direction: Vec3) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::chi_square_of_sampler;
+    use crate::testing::Random;
 
     fn triangle(offset: Vec3) -> Triangle {
         Triangle([offset, offset + Vec3::new(2.0, 0.0, 0.0), offset + Vec3::new(0.5, 0.3, 1.5)])
     }
 
+    /// Share of directions within an angle of the sun: the integral of the density over the cap, in closed form.
+    fn share_within(h: f64) -> f64 {
+        ((h + level()) / level()).ln() / ((2.0 + level()) / level()).ln()
+    }
+
     #[test]
-    fn guided_directions_follow_their_density() {
+    fn directions_around_the_sun_follow_their_density() {
+        let sun = Vec3::new(0.3, -0.8, 0.5).normalize();
+        let (mut random, n) = (Random(7), 100_000);
+        let directions: Vec<Vec3> = (0..n).map(|_| around(sun, [random.next(), random.next()])).collect();
+        for degrees in [0.1f64, 0.5, 2.0, 10.0, 45.0, 120.0, 180.0] {
+            let h = 2.0 * (degrees.to_radians() / 2.0).sin().powi(2);
+            let within = directions.iter().filter(|d| 1.0 - d.dot(sun) <= h + 1e-12).count();
+            let share = share_within(h);
+            let error = (share * (1.0 - share) / f64::from(n)).sqrt();
+            assert!((within as f64 / f64::from(n) - share).abs() <= 4.0 * error + 1e-9, "{degrees} degrees");
+            // The density is the derivative of the share by solid angle, 2 pi dh.
+            let step = 1e-4 * h;
+            let slope = (share_within(h + step) - share_within(h - step)) / (4.0 * PI * step);
+            let side = sun.any_orthonormal_vector();
+            let direction = sun * (1.0 - h) + side * (h * (2.0 - h)).max(0.0).sqrt();
+            assert!((around_pdf(sun, direction) / slope - 1.0).abs() < 1e-5, "{degrees} degrees");
+        }
+        let mean: Vec3 = directions.iter().map(|d| *d - sun * d.dot(sun)).sum::<Vec3>() / f64::from(n);
+        assert!(mean.length() < 0.01, "uneven in azimuth: {mean}");
+    }
+
+    /// Solid angle of a triangle (Van Oosterom and Strackee 1983).
+    fn solid_angle(triangle: &Triangle, point: Vec3) -> f64 {
+        let [a, b, c] = triangle.0.map(|v| (v - point).normalize());
+        2.0 * a.dot(b.cross(c)).abs().atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
+    }
+
+    #[test]
+    fn the_inverse_density_towards_shades_sums_to_their_solid_angle() {
         let shades = vec![triangle(Vec3::new(-1.0, 2.0, 0.0)), triangle(Vec3::new(-2.0, -1.0, 1.0))];
-        let point = Vec3::new(0.2, 0.1, 0.3);
-        let around_a_sun = Vec3::new(0.3, -0.8, 0.5).normalize();
-        for (name, shades, suns) in [
-            ("shades and a sun", shades.clone(), vec![around_a_sun]),
-            ("shades", shades.clone(), vec![]),
-            ("two suns", vec![shades[0]; MAX_TRIANGLES + 1], vec![around_a_sun, Vec3::Z]),
-        ] {
-            let guide = Guide::new(shades, suns).expect("something to guide to");
+        for point in [Vec3::new(0.2, 0.1, 0.3), Vec3::new(-0.5, 1.9, 0.5), Vec3::new(5.0, 5.0, 5.0)] {
+            let truth: f64 = shades.iter().map(|t| solid_angle(t, point)).sum();
+            let guide = Guide::new(shades.clone(), Vec::new()).expect("a guide");
             let guided = 1.0 - guide.own_share();
-            chi_square_of_sampler(
-                name,
-                |choice, u| guide.sample(point, choice, u),
-                |d| guide.pdf(point, d) / guided,
+            let (mut random, n) = (Random(7), 200_000);
+            let sum: f64 = (0..n)
+                .filter_map(|_| guide.sample(point, random.next(), [random.next(), random.next()]))
+                .map(|d| guided / guide.pdf(point, d))
+                .sum();
+            assert!(
+                (sum / f64::from(n) / truth - 1.0).abs() < 0.01,
+                "{point}: {} {truth}",
+                sum / f64::from(n)
             );
         }
     }

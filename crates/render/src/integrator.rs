@@ -8,7 +8,8 @@ mod direct;
 mod path;
 
 use crate::exact_sun::ExactSuns;
-use crate::material::{Arrival, Material, Scattering, Smooth};
+use crate::guide::Guide;
+use crate::material::{Arrival, Material, Scattering, Smooth, SmoothSample};
 use crate::shapes::Ray;
 use crate::world::{Facing, Object, Seen};
 use crate::{RenderOptions, World};
@@ -99,6 +100,7 @@ impl Integrator<'_> {
         let choice = sampler.next_1d() * whole;
         if choice < straight {
             path.go_straight(met.arrival.point, met.scattering.straight * (whole / straight));
+            path.is_past_peak |= matches!(met.material, Some(Material::Table(_)));
         } else if choice < straight + mirrored {
             path.mirror(&met.arrival, met.scattering.mirrored * (whole / mirrored), met.is_flat);
         } else if choice < straight + mirrored + refracted {
@@ -110,11 +112,14 @@ impl Integrator<'_> {
         true
     }
 
-    /// Go on in a direction drawn from the smooth lobes.
+    /// Go on in a direction drawn from the smooth lobes, or where the guide points.
     fn scatter(&self, path: &mut Path, met: &Met, sampler: &mut Sampler) -> bool {
-        let Some(sample) = met.scattering.smooth.sample(sampler) else { return false };
+        let Some(sample) = self.draw(met, sampler) else { return false };
         let share = met.smooth_share();
         let mut weight = sample.weight.total();
+        if weight == Rgb::ZERO {
+            return false;
+        }
         if let Some(limit) = self.limits.max_bounces {
             // Which lobe was it? Drawn in proportion, so that each lobe keeps its mean.
             let diffuse = luminance(sample.weight.diffuse) / luminance(weight);
@@ -133,6 +138,26 @@ impl Integrator<'_> {
         let departure = Departure { point, pdf: sample.pdf * share, source_factor: sample.source_factor };
         path.depart(departure, sample.direction, weight / share);
         true
+    }
+
+    fn draw(&self, met: &Met, sampler: &mut Sampler) -> Option<SmoothSample> {
+        let smooth = &met.scattering.smooth;
+        let Some(guide) = self.guide(smooth) else { return smooth.sample(sampler) };
+        let (choice, own) = (sampler.next_1d(), guide.own_share());
+        let direction = if choice < own {
+            smooth.sample(sampler)?.direction
+        } else {
+            guide.sample(met.arrival.point, (choice - own) / (1.0 - own), sampler.next_2d())?
+        };
+        let pdf = own * smooth.pdf(direction) + guide.pdf(met.arrival.point, direction);
+        let cosine = direction.dot(met.arrival.normal).abs();
+        let source_factor = smooth.source_factor(direction);
+        let weight = smooth.evaluate(direction).scaled(cosine / pdf);
+        (pdf > 0.0).then_some(SmoothSample { direction, weight, pdf, source_factor })
+    }
+
+    fn guide(&self, smooth: &Smooth) -> Option<&Guide> {
+        self.world.guide.as_ref().filter(|_| smooth.can_be_guided())
     }
 }
 

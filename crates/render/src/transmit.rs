@@ -57,7 +57,7 @@ impl Target {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Transmitted {
     pub share: Rgb,
-    /// Would a sampled path not have come this way? (It was refracted, or passed a peak by a rule of the reference.)
+    /// Is this way left to shadow rays? (It was refracted, or passed a table's peak.)
     pub only_by_shadow_rays: bool,
 }
 
@@ -166,9 +166,7 @@ impl World {
                 None => Pass::Straight(Rgb::ZERO, false),
             },
             Material::Dielectric(solid) => Pass::Refracted(solid),
-            Material::Table(table) => {
-                Pass::Straight(table.straight(arrival, target.is_direct), table.is_reference_rule())
-            }
+            Material::Table(table) => Pass::Straight(table.straight(arrival, target.is_direct), true),
             material => Pass::Straight(material.straight(arrival, target.is_direct), false),
         }
     }

@@ -1,6 +1,7 @@
 //! Light that arrives from emitters: by shadow rays, and by paths that meet them.
 
 use super::{Integrator, Met, path::Path};
+use crate::guide::Guide;
 use crate::light::{LightSample, power_heuristic};
 use crate::material::{Arrival, Emitter, Smooth, reflect};
 use crate::shapes::Ray;
@@ -19,6 +20,7 @@ impl Integrator<'_> {
             smooth: &met.scattering.smooth,
             share: met.smooth_share(),
             is_last: self.is_last(path),
+            guide: self.guide(&met.scattering.smooth),
         };
         let mut sum = Rgb::ZERO;
         for &sun in self.world.distant.suns() {
@@ -58,7 +60,7 @@ impl Integrator<'_> {
         }
         let finds =
             !transmitted.only_by_shadow_rays && (!sample.is_direct || receiver.smooth.samples_find_sources());
-        let other = if finds { receiver.share * receiver.smooth.pdf(sample.direction) } else { 0.0 };
+        let other = if finds { receiver.share * receiver.pdf(sample.direction) } else { 0.0 };
         let weight = power_heuristic(sample.pdf, other);
         // Past the last bounce no sampled path finds what a diffuse lobe gets from a light source; from the sky it gets none.
         let diffuse_weight = match (receiver.is_last, sample.is_direct) {
@@ -164,7 +166,14 @@ fn weight(path: &Path, emitter: &Emitter, distance: f64, shadow_pdf: impl Fn() -
         return 0.0;
     }
     let factor = if emitter.is_direct(distance) { departure.source_factor } else { 1.0 };
-    if path.is_bent { factor } else { factor * power_heuristic(departure.pdf, shadow_pdf()) }
+    if path.is_bent {
+        return factor;
+    }
+    let shadow_pdf = shadow_pdf();
+    if path.is_past_peak && shadow_pdf > 0.0 {
+        return 0.0;
+    }
+    factor * power_heuristic(departure.pdf, shadow_pdf)
 }
 
 /// Where light is received.
@@ -175,6 +184,7 @@ struct Receiver<'a, 'w> {
     share: f64,
     /// May no diffuse bounce follow?
     is_last: bool,
+    guide: Option<&'a Guide>,
 }
 
 impl Receiver<'_, '_> {
@@ -183,6 +193,15 @@ impl Receiver<'_, '_> {
             self.smooth.toward_source(sample.direction, sample.solid_angle)
         } else {
             self.smooth.evaluate(sample.direction)
+        }
+    }
+
+    /// Density [1/sr] with which paths go on in this direction, if they go on by the smooth lobes.
+    fn pdf(&self, direction: Vec3) -> f64 {
+        let own = self.smooth.pdf(direction);
+        match self.guide {
+            Some(guide) => guide.own_share() * own + guide.pdf(self.arrival.point, direction),
+            None => own,
         }
     }
 

@@ -29,6 +29,8 @@ pub(super) struct Path {
     pub departure: Option<Departure>,
     /// Mirrored or refracted since the departure, or since the camera?
     pub is_bent: bool,
+    /// Passed the peak of a table since the departure?
+    pub is_past_peak: bool,
     /// Refracted, or mirrored by a curved surface, since the camera?
     pub is_distorted: bool,
     /// Direction of the first segment.
@@ -47,6 +49,7 @@ impl Path {
             bounces: 0,
             departure: None,
             is_bent: false,
+            is_past_peak: false,
             is_distorted: false,
             first_direction: ray.direction,
             extinction: Rgb::ZERO,
@@ -108,5 +111,6 @@ impl Path {
         self.throughput *= weight;
         self.departure = Some(departure);
         self.is_bent = false;
+        self.is_past_peak = false;
     }
 }

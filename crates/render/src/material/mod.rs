@@ -10,7 +10,7 @@ mod ward;
 pub(crate) use dielectric::Dielectric;
 pub(crate) use emitter::{Emitter, EmitterKind};
 pub(crate) use glass::Glass;
-pub(crate) use smooth::{Smooth, SmoothValue};
+pub(crate) use smooth::{Smooth, SmoothSample, SmoothValue};
 pub(crate) use table::Table;
 pub(crate) use ward::WardMaterial;
 
@@ -127,6 +127,15 @@ impl Material {
             Self::Glass(m) => m.transmittance(arrival.cosine()),
             Self::Table(m) => m.straight(arrival, direct),
             Self::Dielectric(_) | Self::Mirror(_) | Self::Emitter(_) => Rgb::ZERO,
+        }
+    }
+
+    /// Does it scatter light to its other side?
+    pub fn is_shade(&self) -> bool {
+        match self {
+            Self::Ward(m) => m.is_trans(),
+            Self::Table(_) => true,
+            Self::Glass(_) | Self::Dielectric(_) | Self::Mirror(_) | Self::Emitter(_) => false,
         }
     }
 

@@ -82,6 +82,20 @@ impl Smooth<'_> {
         }
     }
 
+    /// What light sources that a path meets in this direction are multiplied with; see [`Self::toward_source`].
+    pub fn source_factor(&self, direction: Vec3) -> f64 {
+        match self {
+            Self::Ward(lobes) => lobes.source_factor(direction),
+            Self::Table(lobes) if lobes.has_source_rule() => 0.0,
+            _ => 1.0,
+        }
+    }
+
+    /// Are directions best drawn with a guide's help? Not where a table knows better.
+    pub fn can_be_guided(&self) -> bool {
+        matches!(self, Self::Sensor(_) | Self::Ward(_))
+    }
+
     /// May sampled directions find light sources? Not where `toward_source` is a rule of its own.
     pub fn samples_find_sources(&self) -> bool {
         match self {
