@@ -91,8 +91,11 @@ pub struct Sides {
 }
 
 impl Bsdf {
-    /// Read an LBNL XML file and split it.
+    /// Read an LBNL XML file and split it, or read a split that [`Self::save_split`] wrote (its folder or its JSON file).
     pub fn load(path: &Path) -> Result<Self> {
+        if Self::is_split(path) {
+            return Self::load_split(path);
+        }
         let text = std::fs::read(path).map_err(|e| Error::io(path, e))?;
         Self::parse(&path.to_string_lossy(), &text)
     }
@@ -101,7 +104,14 @@ impl Bsdf {
     pub fn parse(file: &str, text: &[u8]) -> Result<Self> {
         let mut document = xml::parse(file, text)?;
         let blocks = std::mem::take(&mut document.blocks);
-        let sides = sides(file, &blocks)?;
+        let sides = sides_of(file, &blocks, &|direction, table, color| {
+            let transmission = direction.starts_with("Transmission");
+            Ok(if transmission {
+                Distribution::with_split(table, color)
+            } else {
+                Distribution::new(table, color)
+            })
+        })?;
         Ok(Self::from_sides(document, sides))
     }
 
@@ -271,15 +281,18 @@ fn largest_hemispherical(d: &Distribution) -> f64 {
     (0..columns.len()).map(of_column).fold(0.0, f64::max)
 }
 
+/// Makes a distribution of a direction's luminous table and its CIE X and Z.
+pub(crate) type Make<'a> = &'a dyn Fn(&str, Table, Option<[Vec<f32>; 2]>) -> Result<Distribution>;
+
 /// Give the blocks of a file their sides. A block that comes again replaces the one before, as in Radiance's library.
-fn sides(file: &str, blocks: &[Block]) -> Result<Sides> {
+pub(crate) fn sides_of(file: &str, blocks: &[Block], make: Make) -> Result<Sides> {
     let block = |band: &str, direction: &str| {
         blocks
             .iter()
             .rev()
             .find(|b| b.band.eq_ignore_ascii_case(band) && b.direction.eq_ignore_ascii_case(direction))
     };
-    let distribution = |direction: &str, split: bool| -> Result<Option<Arc<Distribution>>> {
+    let distribution = |direction: &str| -> Result<Option<Arc<Distribution>>> {
         let Some(luminous) = block("Visible", direction) else { return Ok(None) };
         let whole_file = Location::new(file, 0, 0);
         let color = if let (Some(x), Some(z)) = (block("CIE-X", direction), block("CIE-Z", direction)) {
@@ -294,16 +307,13 @@ fn sides(file: &str, blocks: &[Block]) -> Result<Sides> {
         } else {
             None
         };
-        let table = luminous.table.clone();
-        let made =
-            if split { Distribution::with_split(table, color) } else { Distribution::new(table, color) };
-        Ok(Some(Arc::new(made)))
+        Ok(Some(Arc::new(make(direction, luminous.table.clone(), color)?)))
     };
     let sides = Sides {
-        transmission_front: distribution("Transmission Front", true)?,
-        transmission_back: distribution("Transmission Back", true)?,
-        reflection_front: distribution("Reflection Front", false)?,
-        reflection_back: distribution("Reflection Back", false)?,
+        transmission_front: distribution("Transmission Front")?,
+        transmission_back: distribution("Transmission Back")?,
+        reflection_front: distribution("Reflection Front")?,
+        reflection_back: distribution("Reflection Back")?,
     };
     let none = sides.transmission_front.is_none()
         && sides.transmission_back.is_none()

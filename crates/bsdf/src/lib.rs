@@ -15,9 +15,11 @@
 pub mod basis;
 mod bsdf;
 mod distribution;
+mod incident;
 pub mod outline;
 pub mod peak;
 mod proposal;
+mod split_files;
 pub mod synthetic;
 pub mod table;
 pub mod tree;
@@ -26,5 +28,7 @@ mod xml_write;
 
 pub use bsdf::{Bsdf, Mode, Sample, Sides};
 pub use distribution::Distribution;
+pub use incident::Incident;
 pub use peak::{ColumnPeak, PeakRule, Split};
 pub use proposal::Oriented;
+pub use split_files::SplitFiles;
