@@ -7,7 +7,7 @@
 use crate::shapes::{Analytic, Bounds, COINCIDENT, Ray, ShearedRay, Triangle};
 use glam::{UVec2, Vec3A};
 use obvhs::{Boundable, BvhBuildParams, aabb::Aabb, cwbvh::CwBvh, cwbvh::builder::build_cwbvh};
-use std::collections::HashMap;
+use std::{cell::Cell, collections::HashMap};
 use sunpeak_core::{Error, Result, Vec3};
 
 /// Nothing nearer than this is hit, relative to the size of the coordinates (at least 1): a ray does not hit the
@@ -26,6 +26,16 @@ const MAX_COINCIDENT: usize = 128;
 
 /// `obvhs` keeps at most this many levels on its traversal stack.
 const MAX_DEPTH: usize = 32;
+
+thread_local! {
+    /// Rays that this thread has traced.
+    static RAYS: Cell<u64> = const { Cell::new(0) };
+}
+
+/// How many rays has this thread traced so far?
+pub(crate) fn rays_of_this_thread() -> u64 {
+    RAYS.get()
+}
 
 /// What a ray can hit.
 #[derive(Clone, Debug)]
@@ -141,6 +151,7 @@ impl Accel {
     }
 
     fn crossings<'a>(&'a self, ray: &Ray, t_max: f64, mut visit: impl FnMut(Hit, &'a Primitive) -> Continue) {
+        RAYS.set(RAYS.get() + 1);
         let Some((enter, leave)) = self.bounds.and_then(|b| widened(b, self.padding).crossing(ray)) else {
             return;
         };

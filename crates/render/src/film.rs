@@ -2,7 +2,7 @@
 
 use crate::exact_sun::ExactSuns;
 use crate::integrator::{Integrator, Limits};
-use crate::passes::{Means, estimate};
+use crate::passes::{Means, Reports, estimate};
 use crate::shapes::Ray;
 use crate::{RenderOptions, World};
 use sunpeak_core::{Control, Error, Result, Rgb, Sampler};
@@ -30,7 +30,8 @@ pub fn render_picture(
     let exact_suns = options.exact_suns.then(|| ExactSuns::find(world, view, width, height, options.seed));
     let film = Film { camera, width, height, seed: options.seed };
     let integrator = Integrator { world, limits: Limits::of(options), exact_suns: exact_suns.as_ref() };
-    let means = estimate(width * height, options, control, |pixel, s| film.sample(&integrator, pixel, s))?;
+    let reports = Reports { control, rays: &world.rays };
+    let means = estimate(width * height, options, reports, |pixel, s| film.sample(&integrator, pixel, s))?;
     let mut picture = Picture {
         width,
         height,

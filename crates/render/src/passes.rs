@@ -2,9 +2,11 @@
 //!
 //! Each item adds its own samples in order, so the result does not depend on threads.
 
+use crate::accel::rays_of_this_thread;
 use crate::{DEFAULT_SAMPLES, RenderOptions};
 use rayon::prelude::*;
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use sunpeak_core::{Control, Error, Result, Rgb};
 
@@ -23,11 +25,19 @@ pub(crate) struct Means {
     pub samples: u32,
 }
 
+/// Where finished work is reported.
+#[derive(Clone, Copy)]
+pub(crate) struct Reports<'a> {
+    pub control: &'a Control,
+    /// Counts rays.
+    pub rays: &'a AtomicU64,
+}
+
 /// Estimate `items` values; `sample(item, index)` is one estimate of one of them.
 pub(crate) fn estimate(
     items: usize,
     options: &RenderOptions,
-    control: &Control,
+    reports: Reports,
     sample: impl Fn(usize, u64) -> Rgb + Sync,
 ) -> Result<Means> {
     let goal = Goal::new(items, options)?;
@@ -35,29 +45,31 @@ pub(crate) fn estimate(
         .num_threads(options.threads.unwrap_or(0))
         .build()
         .map_err(|e| Error::value(format!("cannot start {:?} threads: {e}", options.threads)))?;
-    goal.announce(control);
-    pool.install(|| run(items, &goal, control, &sample))
+    goal.announce(reports.control);
+    pool.install(|| run(items, &goal, reports, &sample))
 }
 
 fn run(
     items: usize,
     goal: &Goal,
-    control: &Control,
+    reports: Reports,
     sample: &(impl Fn(usize, u64) -> Rgb + Sync),
 ) -> Result<Means> {
     let mut sums = vec![Rgb::ZERO; items];
     let mut done = 0;
     while let Some(pass) = goal.next_pass(done) {
         sums.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, sums)| {
-            if control.is_stopped() {
+            if reports.control.is_stopped() {
                 return;
             }
+            let before = rays_of_this_thread();
             for (i, sum) in sums.iter_mut().enumerate() {
                 *sum += (done..done + pass).map(|s| sample(chunk * CHUNK + i, u64::from(s))).sum::<Rgb>();
             }
-            goal.report(control, sums.len() as u64 * u64::from(pass));
+            reports.rays.fetch_add(rays_of_this_thread() - before, Ordering::Relaxed);
+            goal.report(reports.control, sums.len() as u64 * u64::from(pass));
         });
-        control.check()?;
+        reports.control.check()?;
         done += pass;
     }
     let values = sums.into_iter().map(|sum| sum / f64::from(done)).collect();
@@ -128,13 +140,19 @@ impl Goal {
 mod tests {
     use super::*;
 
+    fn reports(control: &Control) -> Reports<'_> {
+        static RAYS: AtomicU64 = AtomicU64::new(0);
+        Reports { control, rays: &RAYS }
+    }
+
     #[test]
     fn counts_and_means_are_right_on_any_number_of_threads() {
         let one = |threads| {
             let options = RenderOptions { samples: Some(37), threads: Some(threads), ..Default::default() };
             let control = Control::new();
-            let means = estimate(1000, &options, &control, |i, s| Rgb::splat(i as f64 + (s as f64).sqrt()))
-                .expect("runs");
+            let means =
+                estimate(1000, &options, reports(&control), |i, s| Rgb::splat(i as f64 + (s as f64).sqrt()))
+                    .expect("runs");
             assert_eq!((means.samples, control.progress()), (37, (37_000, 37_000)));
             means.values
         };
@@ -152,11 +170,14 @@ mod tests {
             std::thread::sleep(Duration::from_millis(1));
             Rgb::ONE
         };
-        let means = estimate(5, &options, &Control::new(), slow).expect("runs");
+        let means = estimate(5, &options, reports(&Control::new()), slow).expect("runs");
         assert!(means.samples >= 8 && start.elapsed().as_secs_f64() < 0.4);
         let control = Control::new();
         control.stop();
-        assert!(matches!(estimate(5, &RenderOptions::default(), &control, slow), Err(Error::Interrupted)));
+        assert!(matches!(
+            estimate(5, &RenderOptions::default(), reports(&control), slow),
+            Err(Error::Interrupted)
+        ));
     }
 
     #[test]
@@ -166,7 +187,7 @@ mod tests {
             RenderOptions { threads: Some(0), ..Default::default() },
             RenderOptions { time_s: Some(f64::NAN), ..Default::default() },
         ] {
-            assert!(estimate(1, &options, &Control::new(), |_, _| Rgb::ONE).is_err());
+            assert!(estimate(1, &options, reports(&Control::new()), |_, _| Rgb::ONE).is_err());
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Single rays and irradiance sensors, as `rtrace` and `rtrace -I`.
 
 use crate::integrator::{Integrator, Limits};
-use crate::passes::estimate;
+use crate::passes::{Reports, estimate};
 use crate::shapes::Ray;
 use crate::{RenderOptions, World};
 use sunpeak_core::{Control, Error, Result, Rgb, Sampler, Vec3};
@@ -23,7 +23,7 @@ pub fn trace_radiance(
         let mut sampler = Sampler::new(options.seed, item as u64, index);
         integrator.radiance(Ray::new(origin, direction), f64::INFINITY, &mut sampler)
     };
-    Ok(estimate(rays.len(), options, control, sample)?.values)
+    Ok(estimate(rays.len(), options, Reports { control, rays: &world.rays }, sample)?.values)
 }
 
 /// Irradiance [W m⁻²] at sensors, each given by a point and a normal (of any length).
@@ -42,7 +42,7 @@ pub fn trace_irradiance(
         let (point, normal) = sensors[item];
         integrator.irradiance(point, normal, &mut Sampler::new(options.seed, item as u64, index))
     };
-    Ok(estimate(sensors.len(), options, control, sample)?.values)
+    Ok(estimate(sensors.len(), options, Reports { control, rays: &world.rays }, sample)?.values)
 }
 
 /// Finite points and unit vectors.

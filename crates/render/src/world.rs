@@ -8,6 +8,7 @@ use crate::guide::Guide;
 use crate::light::{DistantSources, Lamps};
 use crate::material::{Alternate, Arrival, Emitter, EmitterKind, Material, MaterialId};
 use crate::shapes::Ray;
+use std::sync::atomic::{AtomicU64, Ordering};
 use sunpeak_bsdf::PeakRule;
 use sunpeak_core::{Result, Rgb, Vec3};
 use sunpeak_scene::Scene;
@@ -23,6 +24,7 @@ pub struct World {
     /// Objects that are planar mirrors.
     pub(crate) mirrors: Vec<u32>,
     pub(crate) rule: PeakRule,
+    pub(crate) rays: AtomicU64,
     /// Where diffuse surfaces look for light, if there are shades.
     pub(crate) guide: Option<Guide>,
 }
@@ -72,6 +74,16 @@ impl World {
     /// The rule by which `aBSDF` materials pass light straight.
     pub fn peak_rule(&self) -> PeakRule {
         self.rule
+    }
+
+    /// Distance from `origin` to the first surface in the unit vector's `direction`, visible or not.
+    pub fn distance(&self, origin: Vec3, direction: Vec3) -> Option<f64> {
+        self.accel.closest(&Ray::new(origin, direction), f64::INFINITY).map(|hit| hit.t)
+    }
+
+    /// Rays that were traced for pictures, rays and sensors so far, shadow rays included.
+    pub fn rays_traced(&self) -> u64 {
+        self.rays.load(Ordering::Relaxed)
     }
 
     pub(crate) fn object(&self, hit: &Hit) -> &Object {

@@ -78,6 +78,7 @@ impl<'s> Compiler<'s> {
             lamps: Lamps::new(self.lamps),
             mirrors: self.mirrors,
             rule: self.options.peak,
+            rays: Default::default(),
             guide: Guide::new(self.shades, suns),
         })
     }
