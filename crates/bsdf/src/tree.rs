@@ -4,6 +4,18 @@
 //! coordinates) and the exiting point (two); a rank-3 tree, isotropic, has the incident radius as (1 - sin theta)/2
 //! and the exiting point turned so that the unscattered direction lies on the positive first axis.
 
+mod build;
+
+pub use build::TreeBuilder;
+
+/// Most values that a file may hold: 128 cells a side in four dimensions, 1 GB.
+pub const MAX_VALUES: usize = 1 << 28;
+
+/// What to say past that.
+pub fn too_many_values() -> String {
+    format!("more than {MAX_VALUES} values in the file; this is the most")
+}
+
 /// A tree of values over the unit hypercube of `rank` dimensions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tree {
@@ -40,23 +52,7 @@ pub struct Region {
     pub smallest: f64,
 }
 
-/// A tree as it is read: nested, before equal grids are merged.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Nested {
-    /// `2^rank` children.
-    Branch(Vec<Nested>),
-    /// `2^(rank * log2)` values.
-    Grid(u8, Vec<f32>),
-}
-
 impl Tree {
-    /// Lay a nested tree out flat; branches whose children are equal grids become one grid.
-    pub fn from_nested(rank: usize, root: Nested) -> Self {
-        let mut tree = Self { rank, nodes: vec![Node::Grid { log2: 0, first: 0 }], values: Vec::new() };
-        tree.place(0, merge(rank, root));
-        tree
-    }
-
     /// A regular tree of `2^log2` cells a side; `value` gets the cell's coordinates.
     pub fn regular(rank: usize, log2: u8, mut value: impl FnMut([usize; 4]) -> f32) -> Self {
         let side = 1usize << log2;
@@ -70,23 +66,6 @@ impl Tree {
             })
             .collect();
         Self { rank, nodes: vec![Node::Grid { log2, first: 0 }], values }
-    }
-
-    fn place(&mut self, at: usize, node: Nested) {
-        match node {
-            Nested::Grid(log2, values) => {
-                self.nodes[at] = Node::Grid { log2, first: self.values.len() as u32 };
-                self.values.extend(values);
-            }
-            Nested::Branch(children) => {
-                let first = self.nodes.len();
-                self.nodes[at] = Node::Branch(first as u32);
-                self.nodes.resize(first + children.len(), Node::Grid { log2: 0, first: 0 });
-                for (i, child) in children.into_iter().enumerate() {
-                    self.place(first + i, child);
-                }
-            }
-        }
     }
 
     /// 3 (isotropic) or 4.
@@ -225,97 +204,23 @@ impl Tree {
 
     /// Edge of the smallest cell.
     pub fn smallest(&self) -> f64 {
-        let mut smallest: f64 = 1.0;
-        self.for_each_leaf(|leaf| smallest = smallest.min(leaf.size));
-        smallest
+        self.smallest_below(0)
     }
-}
 
-fn merge(rank: usize, node: Nested) -> Nested {
-    let Nested::Branch(children) = node else { return node };
-    let children: Vec<_> = children.into_iter().map(|c| merge(rank, c)).collect();
-    let Some(&Nested::Grid(log2, _)) = children.first() else { return Nested::Branch(children) };
-    if !children.iter().all(|c| matches!(c, Nested::Grid(l, _) if *l == log2)) || log2 >= 15 {
-        return Nested::Branch(children);
-    }
-    let (side, half) = (2usize << log2, 1usize << log2);
-    let mut values = vec![0.0; side.pow(rank as u32)];
-    for (number, child) in children.iter().enumerate() {
-        let Nested::Grid(_, small) = child else { continue };
-        // Rows of the last dimension are copied whole.
-        for (row, chunk) in small.chunks_exact(half).enumerate() {
-            let mut at = 0;
-            for d in 0..rank - 1 {
-                let cell = (row >> (usize::from(log2) * (rank - 2 - d))) & (half - 1);
-                at = at * side + cell + half * ((number >> d) & 1);
+    fn smallest_below(&self, node: usize) -> f64 {
+        match self.nodes[node] {
+            Node::Grid { log2, .. } => 0.5f64.powi(i32::from(log2)),
+            Node::Branch(first) => {
+                let children = first as usize..first as usize + (1 << self.rank);
+                0.5 * children.map(|child| self.smallest_below(child)).fold(1.0, f64::min)
             }
-            let at = at * side + half * ((number >> (rank - 1)) & 1);
-            values[at..at + half].copy_from_slice(chunk);
         }
     }
-    Nested::Grid(log2 + 1, values)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
-
-    fn nested(rank: usize, depth: u32) -> BoxedStrategy<Nested> {
-        let grid = (0u8..2).prop_flat_map(move |log2| {
-            proptest::collection::vec(0.0f32..9.0, 1 << (rank * usize::from(log2)))
-                .prop_map(move |v| Nested::Grid(log2, v))
-        });
-        grid.prop_recursive(depth, 64, 16, move |inner| {
-            proptest::collection::vec(inner, 1 << rank).prop_map(Nested::Branch)
-        })
-        .boxed()
-    }
-
-    /// The plain descent, without merging.
-    fn look_up(node: &Nested, rank: usize, mut p: [f64; 4]) -> f32 {
-        match node {
-            Nested::Branch(children) => {
-                let mut n = 0;
-                for (d, x) in p.iter_mut().enumerate().take(rank) {
-                    *x *= 2.0;
-                    if *x >= 1.0 {
-                        *x -= 1.0;
-                        n |= 1 << d;
-                    }
-                }
-                look_up(&children[n], rank, p)
-            }
-            Nested::Grid(log2, values) => {
-                let side = 1usize << log2;
-                values[p[..rank].iter().fold(0, |n, x| n * side + (x * side as f64) as usize)]
-            }
-        }
-    }
-
-    proptest! {
-        #[test]
-        fn merging_keeps_every_value(root in nested(3, 2), p in proptest::array::uniform4(0.0..0.999f64)) {
-            let tree = Tree::from_nested(3, root.clone());
-            prop_assert_eq!(tree.value(p), look_up(&root, 3, p));
-            let leaf = tree.leaf(p);
-            for (corner, x) in leaf.corner.iter().zip(p).take(3) {
-                prop_assert!(*corner <= x && x < corner + leaf.size);
-            }
-        }
-
-        #[test]
-        fn leaves_over_an_incidence_tile_the_square(root in nested(4, 1), p in proptest::array::uniform2(0.0..0.999f64)) {
-            let tree = Tree::from_nested(4, root);
-            let mut area = 0.0;
-            tree.for_each_leaf_over(&p, |leaf| {
-                area += leaf.size * leaf.size;
-                let q = [p[0], p[1], leaf.corner[2] + leaf.size / 2.0, leaf.corner[3] + leaf.size / 2.0];
-                assert_eq!(tree.leaf(q), *leaf);
-            });
-            prop_assert!((area - 1.0).abs() < 1e-12);
-        }
-    }
 
     #[test]
     fn a_regular_tree_gives_back_its_cells() {
