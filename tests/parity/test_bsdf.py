@@ -94,7 +94,7 @@ def test_hemispherical_values(path: Path) -> None:
 
 def test_through_transmittance_in_radiance_mode(path: Path, radiance: Radiance, tmp_path: Path) -> None:
     """A view ray through one aBSDF polygon, a glow of 0.2 degrees exactly behind it."""
-    theta, phi = np.meshgrid([3.0, 12.0, 24.0, 37.0, 51.0, 64.0, 149.0, 171.0], [20.0, 75.0, 160.0, 290.0])
+    theta, phi = np.meshgrid([3.3, 12.2, 23.9, 37.1, 51.3, 63.7, 148.6, 171.2], [20.7, 73.1, 161.3, 288.9])
     w_in = sp.direction(theta.ravel(), phi.ravel())
     sources = "".join(f"g source s{i} 0 0 4 {-x:.9f} {-y:.9f} {-z:.9f} 0.2\n" for i, (x, y, z) in enumerate(w_in))
     scene = (
