@@ -5,6 +5,7 @@ use crate::{
     distribution::Distribution,
     outline::AngularBounds,
     proposal::Oriented,
+    table::Columns,
 };
 use glam::DVec2;
 use sunpeak_core::Vec3;
@@ -37,7 +38,7 @@ impl Incident {
         let columns = distribution.columns();
         // A table's incident point is minus the ray's; against the table it is the ray's own.
         let sign = if reversed { 1.0 } else { -1.0 };
-        let middle = sign * columns.point(column, [0.5, 0.5]);
+        let middle = sign * middle(columns, column);
         let outline: Vec<DVec2> =
             columns.outline(column, EDGE_POINTS).into_iter().map(|p| sign * p).collect();
         let isotropic = distribution.luminous().is_isotropic();
@@ -77,6 +78,20 @@ impl Incident {
     pub fn all(oriented: &Oriented, front: bool) -> Vec<Self> {
         let d = &oriented.distribution;
         (0..d.columns().len()).map(|c| Self::of(d, c, front, oriented.reversed)).collect()
+    }
+}
+
+/// Middle of a column as the field has it: of a patch halfway between its angles (Klems 1994), of other cells halfway between their
+/// coordinates.
+fn middle(columns: &Columns, column: usize) -> DVec2 {
+    let middle = columns.point(column, [0.5, 0.5]);
+    match columns {
+        Columns::Patches(basis) => {
+            let (ring, _) = basis.ring_of(column);
+            let theta_deg = 0.5 * (ring.lower_theta_deg + ring.upper_theta_deg);
+            middle.normalize_or_zero() * theta_deg.to_radians().sin()
+        }
+        _ => middle,
     }
 }
 

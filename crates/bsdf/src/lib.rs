@@ -19,6 +19,7 @@ mod incident;
 pub mod outline;
 pub mod peak;
 mod proposal;
+pub mod report;
 mod split_files;
 pub mod synthetic;
 pub mod table;

@@ -197,6 +197,15 @@ impl Table {
         }
     }
 
+    /// Name of the basis: that of the angle basis, of both if they differ, or the kind of tree.
+    pub fn basis_name(&self) -> String {
+        match self {
+            Self::Matrix(m) if m.incident.name() == m.exiting.name() => m.incident.name().into(),
+            Self::Matrix(m) => format!("{} by {}", m.incident.name(), m.exiting.name()),
+            Self::Tree(t) => format!("TensorTree{}", t.rank()),
+        }
+    }
+
     /// Turns with the incident point (isotropic)?
     pub fn is_isotropic(&self) -> bool {
         matches!(self, Self::Tree(t) if t.rank() == 3)

@@ -10,10 +10,7 @@ use std::{
     sync::Arc,
 };
 use sunpeak_bsdf::{
-    Bsdf, Distribution, Mode, PeakRule, Sides,
-    synthetic::Fabric,
-    table::Table,
-    tree::{Nested, Tree},
+    Bsdf, Distribution, Mode, PeakRule, Sides, synthetic::Fabric, table::Table, tree::TreeBuilder,
     xml::Document,
 };
 use sunpeak_core::{Rgb, Vec3, luminance};
@@ -167,12 +164,27 @@ fn colour_comes_back() {
     }
 }
 
+/// A tree as it stands in a file.
+#[derive(Clone, Debug)]
+enum Nested {
+    Branch(Vec<Nested>),
+    Grid(Vec<f32>),
+}
+
+fn feed(builder: &mut TreeBuilder, node: &Nested) {
+    builder.open().unwrap();
+    match node {
+        Nested::Branch(children) => children.iter().for_each(|c| feed(builder, c)),
+        Nested::Grid(values) => values.iter().for_each(|&v| builder.value(v).unwrap()),
+    }
+    builder.close().unwrap();
+}
+
 /// Trees of random shape with a few bright cells: leaves of all sizes, over many columns.
 fn nested(rank: usize) -> impl Strategy<Value = Nested> {
     let value = prop_oneof![3 => 0.0f32..0.3, 1 => 5.0f32..60.0];
     let grid = (0u8..2).prop_flat_map(move |log2| {
-        proptest::collection::vec(value.clone(), 1 << (rank * usize::from(log2)))
-            .prop_map(move |v| Nested::Grid(log2, v))
+        proptest::collection::vec(value.clone(), 1 << (rank * usize::from(log2))).prop_map(Nested::Grid)
     });
     grid.prop_recursive(3, 128, 16, move |inner| {
         proptest::collection::vec(inner, 1 << rank).prop_map(Nested::Branch)
@@ -184,7 +196,9 @@ proptest! {
     #[test]
     fn trees_of_any_shape_come_back(three in nested(3), four in nested(4)) {
         for (rank, root) in [(3, three), (4, four)] {
-            let table = Table::Tree(Tree::from_nested(rank, root));
+            let mut builder = TreeBuilder::new(rank, 1 << 20);
+            feed(&mut builder, &root);
+            let table = Table::Tree(builder.finish().unwrap());
             let bsdf = of_transmission(&format!("TensorTree{rank}"), Distribution::with_split(table, None));
             let files = bsdf.split_files().unwrap();
             let residual = Bsdf::parse("residual.xml", files.residual_xml.as_bytes()).unwrap();

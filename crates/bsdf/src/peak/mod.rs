@@ -8,6 +8,7 @@ mod split;
 mod surround;
 
 pub use split::{ColumnPeak, Split};
+pub use surround::NARROWEST;
 
 /// Which part of a table goes straight through.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

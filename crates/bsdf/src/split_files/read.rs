@@ -221,7 +221,7 @@ impl Reader {
             }
             lowered.push(cells);
         }
-        let (table, color) = with_cubes(residual, tree, &cubes);
+        let (table, color) = with_cubes(residual, tree, &cubes)?;
         let Table::Tree(whole) = &table else { return Ok(((table, color), Vec::new())) };
         let parts = side.columns.iter().zip(lowered).map(|(c, cells)| {
             (peak_of(c), cells.into_iter().map(|(at, rest)| (whole.leaf(at).index, rest)).collect())

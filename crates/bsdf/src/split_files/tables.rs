@@ -6,11 +6,11 @@
 use crate::{
     distribution::{Distribution, to_rgb},
     table::{Columns, Matrix, Table},
-    tree::{Leaf, Nested, Tree},
+    tree::{Leaf, MAX_VALUES, Tree, TreeBuilder},
 };
 use glam::DVec3;
 use std::collections::HashMap;
-use sunpeak_core::{Rgb, gray, rgb_to_xyz};
+use sunpeak_core::{Error, Result, Rgb, gray, rgb_to_xyz};
 
 /// CIE Y, X, Z of a cell [1/sr]; gray tables have Y in all three.
 pub type Channels = [f32; 3];
@@ -41,7 +41,7 @@ pub fn rgb_of([y, x, z]: Channels, colored: bool) -> Rgb {
 }
 
 /// What a distribution is after its split: the table with each column's candidates lowered to their surround.
-pub fn residual(d: &Distribution) -> ColorTable {
+pub fn residual(d: &Distribution) -> Result<ColorTable> {
     let whole = (d.luminous(), d.color());
     match d.luminous() {
         Table::Matrix(m) => {
@@ -51,7 +51,7 @@ pub fn residual(d: &Distribution) -> ColorTable {
                     values[index] = channels_of(rgb, d.color().is_some());
                 }
             }
-            matrix(m, &values, d.color().is_some())
+            Ok(matrix(m, &values, d.color().is_some()))
         }
         Table::Tree(tree) => Lowered::new(d, tree).build(),
     }
@@ -94,7 +94,7 @@ impl<'a> Lowered<'a> {
         Self { distribution, tree, cells }
     }
 
-    fn build(&self) -> ColorTable {
+    fn build(&self) -> Result<ColorTable> {
         build(self.tree.rank(), self.distribution.color().is_some(), &|corner, size| {
             let leaf = self.tree.leaf(corner);
             (leaf.size >= size).then(|| self.uniform(&leaf, corner, size)).flatten()
@@ -165,7 +165,7 @@ pub fn point_over(columns: &Columns, column: usize, exit: [f64; 2]) -> [f64; 4] 
 }
 
 /// A tree in which cubes are single cells again; elsewhere it is as it was.
-pub fn with_cubes(whole: &Distribution, tree: &Tree, cubes: &HashMap<Cube, Channels>) -> ColorTable {
+pub fn with_cubes(whole: &Distribution, tree: &Tree, cubes: &HashMap<Cube, Channels>) -> Result<ColorTable> {
     let (side, _) = division(whole.columns());
     build(tree.rank(), whole.color().is_some(), &|corner, size| {
         let key = (corner.map(|c| (c * side as f64) as u32), (size * side as f64) as u32);
@@ -177,52 +177,47 @@ pub fn with_cubes(whole: &Distribution, tree: &Tree, cubes: &HashMap<Cube, Chann
 }
 
 /// A tree from what each cube is: one cell with channels, or none where it has to be divided.
-fn build(rank: usize, colored: bool, cell: &impl Fn([f64; 4], f64) -> Option<Channels>) -> ColorTable {
-    let channels = if colored { 3 } else { 1 };
-    let mut trees =
-        node(rank, channels, cell, [0.0; 4], 1.0).into_iter().map(|root| Tree::from_nested(rank, root));
-    let luminous = Table::Tree(trees.next().unwrap_or_else(|| Tree::regular(rank, 0, |_| 0.0)));
-    let color = trees.next().zip(trees.next()).map(|(x, z)| [x.values().to_vec(), z.values().to_vec()]);
-    (luminous, color)
-}
-
-/// The same node of each channel's tree.
-fn node(
+fn build(
     rank: usize,
-    channels: usize,
+    colored: bool,
     cell: &impl Fn([f64; 4], f64) -> Option<Channels>,
-    corner: [f64; 4],
-    size: f64,
-) -> Vec<Nested> {
-    if let Some(value) = cell(corner, size) {
-        return (0..channels).map(|k| Nested::Grid(0, vec![value[k]])).collect();
-    }
-    let mut branches: Vec<Vec<Nested>> = vec![Vec::with_capacity(1 << rank); channels];
-    for child in 0..1usize << rank {
-        let mut at = corner;
-        for (d, x) in at.iter_mut().enumerate().take(rank) {
-            *x += 0.5 * size * (child >> d & 1) as f64;
-        }
-        let parts = node(rank, channels, cell, at, 0.5 * size);
-        for (branch, part) in branches.iter_mut().zip(parts) {
-            branch.push(part);
-        }
-    }
-    branches.into_iter().map(|children| gridded(rank, children)).collect()
+) -> Result<ColorTable> {
+    let builders = (0..if colored { 3 } else { 1 }).map(|_| TreeBuilder::new(rank, MAX_VALUES)).collect();
+    let mut trees = Trees { rank, builders };
+    let built = trees.node(cell, [0.0; 4], 1.0).and_then(|()| {
+        trees.builders.into_iter().map(TreeBuilder::finish).collect::<std::result::Result<Vec<_>, _>>()
+    });
+    let mut trees = built.map_err(|e| Error::value(format!("the split's tree: {e}")))?.into_iter();
+    let luminous = trees.next().ok_or_else(|| Error::value("the split's tree is empty"))?;
+    let color = trees.next().zip(trees.next()).map(|(x, z)| [x.values().to_vec(), z.values().to_vec()]);
+    Ok((Table::Tree(luminous), color))
 }
 
-/// Children that are all single values as a small grid, which takes a fraction of the memory.
-fn gridded(rank: usize, children: Vec<Nested>) -> Nested {
-    let single = |node: &Nested| match node {
-        Nested::Grid(0, values) => values.first().copied(),
-        _ => None,
-    };
-    let values: Option<Vec<f32>> = (0..children.len())
-        .map(|i| {
-            // In a grid the last dimension runs fastest; bit d of a child's number is its place in dimension d.
-            let number = (0..rank).fold(0, |n, d| n | ((i >> (rank - 1 - d) & 1) << d));
-            single(&children[number])
-        })
-        .collect();
-    values.map_or(Nested::Branch(children), |values| Nested::Grid(1, values))
+/// The trees of all channels: the same cells in each.
+struct Trees {
+    rank: usize,
+    builders: Vec<TreeBuilder>,
+}
+
+impl Trees {
+    fn node(
+        &mut self,
+        cell: &impl Fn([f64; 4], f64) -> Option<Channels>,
+        corner: [f64; 4],
+        size: f64,
+    ) -> std::result::Result<(), String> {
+        self.builders.iter_mut().try_for_each(TreeBuilder::open)?;
+        if let Some(channels) = cell(corner, size) {
+            self.builders.iter_mut().zip(channels).try_for_each(|(b, value)| b.value(value))?;
+        } else {
+            for child in 0..1usize << self.rank {
+                let mut at = corner;
+                for (d, x) in at.iter_mut().enumerate().take(self.rank) {
+                    *x += 0.5 * size * (child >> d & 1) as f64;
+                }
+                self.node(cell, at, 0.5 * size)?;
+            }
+        }
+        self.builders.iter_mut().try_for_each(TreeBuilder::close)
+    }
 }

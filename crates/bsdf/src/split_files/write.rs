@@ -31,7 +31,7 @@ impl Bsdf {
     /// The split as texts.
     pub fn split_files(&self) -> Result<SplitFiles> {
         let own = self.own_distributions();
-        let tables: Vec<_> = own.iter().map(|(_, d)| residual(d)).collect();
+        let tables = own.iter().map(|(_, d)| residual(d)).collect::<Result<Vec<_>>>()?;
         let components: Vec<Component> = own
             .iter()
             .zip(&tables)
@@ -86,21 +86,13 @@ fn side(direction: &str, d: &Distribution) -> SideFile {
     SideFile {
         direction: direction.into(),
         met_by_rays_at: if front { "front" } else { "back" }.into(),
-        basis: basis_name(d.luminous()),
+        basis: d.luminous().basis_name(),
         division: division(d.columns()),
         channels: if d.color().is_some() { &["Y", "X", "Z"][..] } else { &["Y"] }
             .iter()
             .map(|s| (*s).into())
             .collect(),
         columns,
-    }
-}
-
-fn basis_name(table: &Table) -> String {
-    match table {
-        Table::Matrix(m) if m.incident.name() == m.exiting.name() => m.incident.name().into(),
-        Table::Matrix(m) => format!("{} by {}", m.incident.name(), m.exiting.name()),
-        Table::Tree(t) => format!("TensorTree{}", t.rank()),
     }
 }
 
