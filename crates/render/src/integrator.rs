@@ -16,10 +16,12 @@ use crate::{RenderOptions, World};
 use path::{Departure, Path};
 use sunpeak_core::{Frame, Rgb, Sampler, Vec3, luminance};
 
-/// Events after which Russian roulette may end a path.
-const ROULETTE_START: u32 = 4;
+/// Russian roulette begins when a path carries less than this, and brings the paths that survive back to it. Higher, and paths
+/// that have come far are ended just before they meet the sky; lower, and they bounce on for nothing.
+const ROULETTE_BELOW: f64 = 0.05;
 
-/// Chance of survival is never above this, so that paths in white rooms end.
+/// Past so many events the chance of survival is never above the ceiling, so that paths in lossless rooms end.
+const ROULETTE_ALWAYS: u32 = 32;
 const ROULETTE_CEILING: f64 = 0.95;
 
 /// Limits of a path.
@@ -198,13 +200,18 @@ impl<'w> Met<'w> {
 
 /// Russian roulette.
 fn survives(path: &mut Path, sampler: &mut Sampler) -> bool {
-    let largest = path.throughput.max_element();
-    if path.events < ROULETTE_START || largest <= 0.0 {
-        return largest > 0.0;
+    let mut chance = path.throughput.max_element() / ROULETTE_BELOW;
+    if path.events > ROULETTE_ALWAYS {
+        chance = chance.min(ROULETTE_CEILING);
     }
-    let chance = largest.min(ROULETTE_CEILING);
+    if chance >= 1.0 {
+        return true;
+    }
+    if chance <= 0.0 || sampler.next_1d() >= chance {
+        return false;
+    }
     path.throughput /= chance;
-    sampler.next_1d() < chance
+    true
 }
 
 #[cfg(test)]

@@ -38,7 +38,7 @@ pub struct RenderOptions {
 pub const DEFAULT_SAMPLES: u32 = 64;
 
 /// Surfaces of any kind that a path may meet unless the caller says.
-pub const DEFAULT_MAX_DEPTH: u32 = 64;
+pub const DEFAULT_MAX_DEPTH: u32 = 256;
 
 impl Default for RenderOptions {
     fn default() -> Self {
