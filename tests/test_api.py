@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import sunpeak as sp
-from sunpeak.demo import fabric
+from sunpeak.demo.fabric import FABRIC, write_fabric
 from sunpeak.files import whole_file
 
 LUMINANCE = 179 * np.array([0.265, 0.670, 0.065])
@@ -22,7 +22,7 @@ FISHEYE = "-vth -vp 0 0 0 -vd 0 1 0 -vu 0 0 1 -vh 180 -vv 180"
 
 @pytest.fixture(scope="module")
 def cloth(tmp_path_factory: pytest.TempPathFactory) -> sp.Bsdf:
-    return sp.Bsdf.load(fabric.write_fabric(tmp_path_factory.mktemp("fabric"), "t3-1024"))
+    return sp.Bsdf.load(write_fabric(tmp_path_factory.mktemp("fabric"), "t3-1024"))
 
 
 class TestBsdf:
@@ -39,7 +39,7 @@ class TestBsdf:
 
     def test_through_is_the_fabric_formula(self, cloth: sp.Bsdf) -> None:
         theta = np.linspace(2.0, 55.0, 30)
-        expected = [fabric.through_transmittance(angle) for angle in np.radians(theta)]
+        expected = [FABRIC.through(angle) for angle in np.radians(theta)]
         np.testing.assert_allclose(cloth.through(sp.direction(theta, 33.0)), expected, rtol=0.02)
         assert (cloth.through(sp.direction(theta), "off") == 0).all()
 

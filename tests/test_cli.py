@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from conftest import CommandLine
+from sunpeak import Fabric
 
 ROOM = """\
 void plastic wall 0 0 5 .5 .5 .5 0 0
@@ -140,16 +141,16 @@ def test_missing_files_are_1(sunpeak: CommandLine, tmp_path: Path) -> None:
         assert files(tmp_path) == set()
 
 
-def fabric(sunpeak_core, basis: str) -> str:
-    return sunpeak_core.fabric_xml(basis, 0.02, 68.0, 0.6, 0.06, 0.4, 0.25, 0.35)
+def fabric(folder: Path, basis: str) -> Path:
+    path = folder / "shade.xml"
+    Fabric().write(path, basis)
+    return path
 
 
 @pytest.mark.parametrize("basis", ["klems-quarter", "t3-64"])
 @pytest.mark.parametrize("damage", ["truncated", "too few values", "not a number"])
 def test_wrong_tables_are_1_with_file_and_line(damage: str, basis: str, sunpeak: CommandLine, tmp_path: Path) -> None:
-    from sunpeak import _core  # noqa: PLC0415
-
-    text = fabric(_core, basis)
+    text = fabric(tmp_path, basis).read_text()
     start, end = text.index("<ScatteringData>"), text.index("</ScatteringData>")
     numbers = list(re.compile(r"[-+.\de]*\d").finditer(text, start, end))
     last = numbers[len(numbers) // 2]
@@ -219,9 +220,7 @@ def test_trace_refuses_wrong_rays(line: str, sunpeak: CommandLine, room: Path) -
 
 
 def test_bsdf_info_and_through(sunpeak: CommandLine, tmp_path: Path) -> None:
-    from sunpeak import _core  # noqa: PLC0415
-
-    (tmp_path / "shade.xml").write_text(fabric(_core, "t3-1024"))
+    fabric(tmp_path, "t3-1024")
     about = json.loads(sunpeak("bsdf", "info", "shade.xml", "--json", folder=tmp_path).out)
     assert about["peak"]["front"]["fires"]
     assert about["components"][0]["basis"] == "TensorTree3"

@@ -6,6 +6,7 @@ channels in Radiance's primaries [W sr⁻¹ m⁻²]; luminance [cd/m²] = 179 (0
 
 from sunpeak._core import InputError, __version__
 from sunpeak.comfort import GlareReport, GlareSource, Task, glare
+from sunpeak.fabrics import Fabric
 from sunpeak.pictures import ExactSource, Picture
 from sunpeak.rendering import World, render, trace
 from sunpeak.scattering import Bsdf, Evidence, Samples, direction
@@ -16,6 +17,7 @@ __all__ = [
     "Bsdf",
     "Evidence",
     "ExactSource",
+    "Fabric",
     "GlareReport",
     "GlareSource",
     "InputError",

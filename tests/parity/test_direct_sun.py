@@ -7,8 +7,8 @@ import pytest
 
 import sunpeak as sp
 from conftest import Radiance
-from sunpeak.demo import fabric
 from sunpeak.demo.expectation import pane
+from sunpeak.demo.fabric import FABRIC, write_fabric
 
 SUN_CD_M2_BY_179 = 5e6
 SUNS = [(35.0, 183.0), (20.0, 200.0), (50.0, 165.0), (10.0, 190.0), (42.0, 215.0)]
@@ -92,7 +92,7 @@ def test_behind_glass(seed: int, radiance: Radiance, tmp_path: Path) -> None:
 
 @pytest.fixture(scope="module", params=["klems", "t3-4096"])
 def cloth(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return fabric.write_fabric(tmp_path_factory.mktemp("fabric"), request.param)
+    return write_fabric(tmp_path_factory.mktemp("fabric"), request.param)
 
 
 def shade(cloth: Path) -> str:
@@ -111,8 +111,8 @@ def test_behind_a_peak_as_radiance_finds_it(seed: int, cloth: Path, radiance: Ra
 def test_behind_a_peak_by_the_split(seed: int, tmp_path: Path) -> None:
     """The fabric's formula, the split of a fine table, and nothing between them."""
     direction, sensor = sun_direction(*SUNS[seed]), sensors(seed)
-    text = shade(fabric.write_fabric(tmp_path, "t3-4096")) + sun_text(direction)
-    through = fabric.through_transmittance(np.arccos(abs(direction[1])))
+    text = shade(write_fabric(tmp_path, "t3-4096")) + sun_text(direction)
+    through = FABRIC.through(np.arccos(abs(direction[1])))
     closed = irradiance(sensor, direction, through) * np.ones(3)
     assert through > 0
     assert_alike(trace(text, sensor, "split"), closed, closed)

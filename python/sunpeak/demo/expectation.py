@@ -3,7 +3,8 @@
 import math
 from dataclasses import dataclass
 
-from sunpeak.demo import fabric, room
+from sunpeak.demo import room
+from sunpeak.demo.fabric import FABRIC
 from sunpeak.images import luminance_cd_m2
 from sunpeak.skies import Sky
 
@@ -38,7 +39,7 @@ def expectation(sky: Sky) -> Expectation:
     cosine = abs(direction[1])
     return Expectation(
         incidence_deg=math.degrees(math.acos(cosine)),
-        fabric_transmittance=fabric.through_transmittance(math.acos(cosine)),
+        fabric_transmittance=FABRIC.through(math.acos(cosine)),
         glazing_transmittance=glazing_transmittance(room.PANE_TRANSMISSIVITY, cosine, len(room.PANES_Y_M)),
         sun_cd_m2=float(luminance_cd_m2(radiance)),
     )

@@ -9,8 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from sunpeak import __version__
-from sunpeak.demo import fabric, room
+from sunpeak.demo import room
 from sunpeak.demo.expectation import Expectation
+from sunpeak.demo.fabric import FABRIC
 from sunpeak.demo.results import Case, Pair
 from sunpeak.images import colours, exposure_of, false_colour, luminance_cd_m2, png_bytes, tonemap
 
@@ -32,10 +33,10 @@ def report_html(pairs: list[Pair], expected: Expectation, *, made_by: str) -> st
         gallery="\n".join(gallery_row(pair, exposure) for pair in pairs),
         scale=scale_css(),
         ticks=scale_ticks(),
-        openness=f"{100 * fabric.OPENNESS:g}",
-        cut_off=f"{fabric.CUT_OFF_DEG:g}",
+        openness=f"{100 * FABRIC.openness:g}",
+        cut_off=f"{FABRIC.cut_off_deg:g}",
         incidence=f"{expected.incidence_deg:.1f}",
-        share=f"{100 * expected.incidence_deg / fabric.CUT_OFF_DEG:.0f}",
+        share=f"{100 * expected.incidence_deg / FABRIC.cut_off_deg:.0f}",
         fabric=f"{expected.fabric_transmittance:.5f}",
         glazing=f"{expected.glazing_transmittance:.4f}",
         sun=quantity(expected.sun_cd_m2),
