@@ -48,16 +48,19 @@ fn offsets() -> Vec<DVec2> {
     offsets
 }
 
+/// The directions that are looked at around the straight one, for the smallest projected solid angle [sr] of the table.
+pub fn probe(w_in: Vec3, smallest: f64) -> impl Iterator<Item = Vec3> {
+    let radius = smallest.sqrt();
+    offsets().into_iter().map(move |offset| (-w_in + radius * offset.extend(0.0)).normalize())
+}
+
 /// The peak that `rule` finds for a ray from `w_in`, if any.
 pub fn peak(bsdf: &Bsdf, w_in: Vec3, rule: PeakRule) -> Option<ReferencePeak> {
     let oriented = bsdf.distribution(w_in, Mode::Transmission)?;
     let table = oriented.distribution.luminous();
     let smallest = oriented.distribution.smallest_projected_solid_angle();
-    let radius = smallest.sqrt();
-
     let mut seen: Vec<(usize, f64, Rgb)> = Vec::new(); // cell, projected solid angle, value
-    for offset in offsets() {
-        let w = (-w_in + radius * offset.extend(0.0)).normalize();
+    for w in probe(w_in, smallest) {
         let (a, b) = oriented.points(-w_in.truncate(), w.truncate());
         let index = table.index(a, b);
         if seen.iter().all(|s| s.0 != index) {
