@@ -130,11 +130,8 @@ impl Bsdf {
             (None, None) => None,
         };
         let transmission = [lobe(&front, &back), lobe(&back, &front)];
-        // In reflection the library has the traced ray as a tree's exiting direction, as a matrix's incident one.
-        let reflection = [sides.reflection_back, sides.reflection_front].map(|d| {
-            let d = significant(d)?;
-            Some(Lobe::new(&d, matches!(d.luminous(), Table::Tree(_))))
-        });
+        let reflection =
+            [sides.reflection_back, sides.reflection_front].map(|d| Some(Lobe::new(&significant(d)?, false)));
         Self {
             name: document.name,
             manufacturer: document.manufacturer,
