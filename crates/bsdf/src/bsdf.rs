@@ -5,14 +5,12 @@ use crate::{
     peak::{PeakRule, reference},
     proposal::{Oriented, Proposal},
     table::Table,
-    xml::{self, Block, Document},
+    xml::Document,
 };
 use glam::DVec2;
-use std::{
-    path::Path,
-    sync::{Arc, OnceLock},
-};
-use sunpeak_core::{Error, Location, Result, Rgb, Vec3, luminance};
+use rayon::prelude::*;
+use std::sync::{Arc, OnceLock};
+use sunpeak_core::{Rgb, Vec3, luminance};
 
 /// Components that scatter less than this [-] count as missing (as in Radiance's library).
 const INSIGNIFICANT: f64 = 0.001;
@@ -91,37 +89,12 @@ pub struct Sides {
 }
 
 impl Bsdf {
-    /// Read an LBNL XML file and split it, or read a split that [`Self::save_split`] wrote (its folder or its JSON file).
-    pub fn load(path: &Path) -> Result<Self> {
-        if Self::is_split(path) {
-            return Self::load_split(path);
-        }
-        let text = std::fs::read(path).map_err(|e| Error::io(path, e))?;
-        Self::parse(&path.to_string_lossy(), &text)
-    }
-
-    /// Read the text of an LBNL XML file and split it; `file` names it in messages.
-    pub fn parse(file: &str, text: &[u8]) -> Result<Self> {
-        let mut document = xml::parse(file, text)?;
-        let blocks = std::mem::take(&mut document.blocks);
-        let sides = sides_of(file, &blocks, &|direction, table, color| {
-            let transmission = direction.starts_with("Transmission");
-            Ok(if transmission {
-                Distribution::with_split(table, color)
-            } else {
-                Distribution::new(table, color)
-            })
-        })?;
-        Ok(Self::from_sides(document, sides))
-    }
-
     /// From distributions named as in a file.
     ///
     /// The file's `Front` is where WINDOW has the outside; a BSDF's frame has its front towards the viewer. So light that
     /// meets the front of the frame is what the file calls `Back`, as in Radiance's library.
     pub fn from_sides(document: Document, sides: Sides) -> Self {
-        let significant =
-            |d: Option<Arc<Distribution>>| d.filter(|d| largest_hemispherical(d) > INSIGNIFICANT);
+        let significant = |d: Option<Arc<Distribution>>| d.filter(|d| is_significant(d));
         let front = significant(sides.transmission_back);
         let back = significant(sides.transmission_front);
         let lobe = |own: &Option<Arc<Distribution>>, other: &Option<Arc<Distribution>>| match (own, other) {
@@ -269,70 +242,11 @@ fn exiting_point(w_out: Vec3) -> DVec2 {
     w_out.truncate()
 }
 
-fn largest_hemispherical(d: &Distribution) -> f64 {
+fn is_significant(d: &Distribution) -> bool {
     let (table, columns) = (d.luminous(), d.columns());
-    let of_column = |column| -> f64 {
+    let hemispherical = |column| -> f64 {
         let cells = table.cells(columns, column);
         cells.iter().map(|c| f64::from(table.values()[c.index]) * c.projected_solid_angle).sum()
     };
-    (0..columns.len()).map(of_column).fold(0.0, f64::max)
-}
-
-/// Makes a distribution of a direction's luminous table and its CIE X and Z.
-pub(crate) type Make<'a> = &'a dyn Fn(&str, Table, Option<[Vec<f32>; 2]>) -> Result<Distribution>;
-
-/// Give the blocks of a file their sides. A block that comes again replaces the one before, as in Radiance's library.
-pub(crate) fn sides_of(file: &str, blocks: &[Block], make: Make) -> Result<Sides> {
-    let block = |band: &str, direction: &str| {
-        blocks
-            .iter()
-            .rev()
-            .find(|b| b.band.eq_ignore_ascii_case(band) && b.direction.eq_ignore_ascii_case(direction))
-    };
-    let distribution = |direction: &str| -> Result<Option<Arc<Distribution>>> {
-        let Some(luminous) = block("Visible", direction) else { return Ok(None) };
-        let whole_file = Location::new(file, 0, 0);
-        let color = if let (Some(x), Some(z)) = (block("CIE-X", direction), block("CIE-Z", direction)) {
-            let fits = |b: &Block| b.table.values().len() == luminous.table.values().len();
-            if !(fits(x) && fits(z)) {
-                let message = format!("{direction}: CIE-X and CIE-Z are not on the basis of Visible");
-                return Err(Error::input(whole_file, message));
-            }
-            Some([x.table.values().to_vec(), z.table.values().to_vec()])
-        } else if let (Some(u), Some(v)) = (block("CIE-u", direction), block("CIE-v", direction)) {
-            chromaticity(&luminous.table, &u.table, &v.table)
-        } else {
-            None
-        };
-        Ok(Some(Arc::new(make(direction, luminous.table.clone(), color)?)))
-    };
-    let sides = Sides {
-        transmission_front: distribution("Transmission Front")?,
-        transmission_back: distribution("Transmission Back")?,
-        reflection_front: distribution("Reflection Front")?,
-        reflection_back: distribution("Reflection Back")?,
-    };
-    let none = sides.transmission_front.is_none()
-        && sides.transmission_back.is_none()
-        && sides.reflection_front.is_none()
-        && sides.reflection_back.is_none();
-    if none {
-        let message = "no Transmission or Reflection in the Visible band (WavelengthDataDirection names 'Transmission Front' …)";
-        return Err(Error::input(Location::new(file, 0, 0), message));
-    }
-    Ok(sides)
-}
-
-/// CIE X and Z from Y and the trees of u' and v' (CIE 15: x = 9u'/(6u' - 16v' + 12), y = 4v'/(same)).
-fn chromaticity(luminous: &Table, u: &Table, v: &Table) -> Option<[Vec<f32>; 2]> {
-    let (Table::Tree(y), Table::Tree(u), Table::Tree(v)) = (luminous, u, v) else { return None };
-    let from = |ratio: fn(f64, f64) -> f64| {
-        let mapped = y.map_leaves(|leaf, value| {
-            let middle = leaf.corner.map(|c| c + 0.5 * leaf.size);
-            let (u, v) = (f64::from(u.value(middle)), f64::from(v.value(middle)));
-            if v > 0.0 { (f64::from(value) * ratio(u, v).max(0.0)) as f32 } else { value }
-        });
-        mapped.values().to_vec()
-    };
-    Some([from(|u, v| 9.0 * u / (4.0 * v)), from(|u, v| (12.0 - 3.0 * u - 20.0 * v) / (4.0 * v))])
+    (0..columns.len()).into_par_iter().any(|column| hemispherical(column) > INSIGNIFICANT)
 }

@@ -109,17 +109,17 @@ impl Distribution {
 
 fn diffuse(table: &Table) -> f64 {
     let least = match table {
-        Table::Matrix(m) => m.values.iter().copied().fold(f32::INFINITY, f32::min),
-        Table::Tree(t) => {
+        Table::Tree(t) if t.rank() == 3 => {
             let mut least = f32::INFINITY;
             t.for_each_leaf(|leaf| {
                 // The half of an isotropic tree past the middle is not used.
-                if t.rank() == 4 || leaf.corner[0] < 0.5 {
+                if leaf.corner[0] < 0.5 {
                     least = least.min(t.values()[leaf.index]);
                 }
             });
             least
         }
+        _ => table.values().iter().copied().fold(f32::INFINITY, f32::min),
     };
     let whole = PI * f64::from(least);
     let counts = whole > 0.01 && (whole < 1.5 || matches!(table, Table::Matrix(_)));

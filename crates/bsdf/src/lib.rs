@@ -16,6 +16,7 @@ pub mod basis;
 mod bsdf;
 mod distribution;
 mod incident;
+mod load;
 pub mod outline;
 pub mod peak;
 mod picture_cells;

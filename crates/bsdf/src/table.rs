@@ -95,6 +95,23 @@ impl Table {
         }
     }
 
+    /// All values, without the cells.
+    pub fn into_values(self) -> Vec<f32> {
+        match self {
+            Self::Matrix(m) => m.values,
+            Self::Tree(t) => t.into_values(),
+        }
+    }
+
+    /// Do values of the same index stand for the same cell?
+    pub fn has_cells_of(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Matrix(a), Self::Matrix(b)) => a.incident == b.incident && a.exiting == b.exiting,
+            (Self::Tree(a), Self::Tree(b)) => a.has_cells_of(b),
+            _ => false,
+        }
+    }
+
     /// A table of the same cells with other values, in the order of [`Self::values`]; none if their number differs.
     pub fn with_values(&self, values: Vec<f32>) -> Option<Self> {
         if values.len() != self.values().len() {

@@ -78,6 +78,16 @@ impl Tree {
         &self.values
     }
 
+    /// All values, without the cells.
+    pub fn into_values(self) -> Vec<f32> {
+        self.values
+    }
+
+    /// Do values of the same index stand for the same cell?
+    pub fn has_cells_of(&self, other: &Self) -> bool {
+        self.rank == other.rank && self.nodes == other.nodes
+    }
+
     /// Another tree of the same shape.
     pub fn map_leaves(&self, value: impl Fn(&Leaf, f32) -> f32) -> Self {
         let mut mapped = self.clone();

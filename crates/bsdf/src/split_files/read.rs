@@ -7,8 +7,9 @@ use super::{
     write::{checksum, division},
 };
 use crate::{
-    bsdf::{Bsdf, sides_of},
+    bsdf::Bsdf,
     distribution::Distribution,
+    load::sides_of,
     peak::{ColumnPeak, Split},
     table::{Columns, Matrix, Table},
     tree::Tree,
@@ -41,7 +42,7 @@ impl Bsdf {
                 return Err(reader.error(format!("'{direction}' is not in {name}; expected it there")));
             }
         }
-        let sides = sides_of(&name, &blocks, &|direction, table, color| {
+        let sides = sides_of(&name, blocks, &|direction, table, color| {
             let side = peak.sides.iter().find(|s| s.direction.eq_ignore_ascii_case(direction));
             match side {
                 Some(side) => reader.whole(side, table, color),

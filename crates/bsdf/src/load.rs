@@ -1,0 +1,99 @@
+//! From a file to a [`Bsdf`]: its blocks get their sides, colour and split.
+
+use crate::{
+    bsdf::{Bsdf, Sides},
+    distribution::Distribution,
+    table::Table,
+    xml::{self, Block, Document},
+};
+use std::{fs::File, io::BufReader, path::Path, sync::Arc};
+use sunpeak_core::{Error, Location, Result};
+
+/// Bytes that are read at a time.
+const BUFFER: usize = 1 << 18;
+
+impl Bsdf {
+    /// Read an LBNL XML file and split it, or read a split that [`Self::save_split`] wrote (its folder or its JSON file).
+    pub fn load(path: &Path) -> Result<Self> {
+        if Self::is_split(path) {
+            return Self::load_split(path);
+        }
+        let file = File::open(path).map_err(|e| Error::io(path, e))?;
+        let name = path.to_string_lossy();
+        Self::from_document(&name, xml::read(&name, BufReader::with_capacity(BUFFER, file))?)
+    }
+
+    /// Read the text of an LBNL XML file and split it; `file` names it in messages.
+    pub fn parse(file: &str, text: &[u8]) -> Result<Self> {
+        Self::from_document(file, xml::parse(file, text)?)
+    }
+
+    fn from_document(file: &str, mut document: Document) -> Result<Self> {
+        let blocks = std::mem::take(&mut document.blocks);
+        let sides = sides_of(file, blocks, &|direction, table, color| {
+            let transmission = direction.starts_with("Transmission");
+            Ok(if transmission {
+                Distribution::with_split(table, color)
+            } else {
+                Distribution::new(table, color)
+            })
+        })?;
+        Ok(Self::from_sides(document, sides))
+    }
+}
+
+/// Makes a distribution of a direction's luminous table and its CIE X and Z.
+pub(crate) type Make<'a> = &'a dyn Fn(&str, Table, Option<[Vec<f32>; 2]>) -> Result<Distribution>;
+
+/// Give the blocks of a file their sides. A block that comes again replaces the one before, as in Radiance's library.
+pub(crate) fn sides_of(file: &str, mut blocks: Vec<Block>, make: Make) -> Result<Sides> {
+    let mut distribution = |direction: &str| -> Result<Option<Arc<Distribution>>> {
+        let mut take = |band: &str| {
+            let is =
+                |b: &Block| b.band.eq_ignore_ascii_case(band) && b.direction.eq_ignore_ascii_case(direction);
+            blocks.iter().rposition(is).map(|at| blocks.swap_remove(at).table)
+        };
+        let Some(luminous) = take("Visible") else { return Ok(None) };
+        let color = match ([take("CIE-X"), take("CIE-Z")], [take("CIE-u"), take("CIE-v")]) {
+            ([Some(x), Some(z)], _) => {
+                if !(x.has_cells_of(&luminous) && z.has_cells_of(&luminous)) {
+                    let message = format!("{direction}: CIE-X and CIE-Z are not on the basis of Visible");
+                    return Err(Error::input(Location::new(file, 0, 0), message));
+                }
+                Some([x.into_values(), z.into_values()])
+            }
+            (_, [Some(u), Some(v)]) => chromaticity(&luminous, &u, &v),
+            _ => None,
+        };
+        Ok(Some(Arc::new(make(direction, luminous, color)?)))
+    };
+    let sides = Sides {
+        transmission_front: distribution("Transmission Front")?,
+        transmission_back: distribution("Transmission Back")?,
+        reflection_front: distribution("Reflection Front")?,
+        reflection_back: distribution("Reflection Back")?,
+    };
+    let none = sides.transmission_front.is_none()
+        && sides.transmission_back.is_none()
+        && sides.reflection_front.is_none()
+        && sides.reflection_back.is_none();
+    if none {
+        let message = "no Transmission or Reflection in the Visible band (WavelengthDataDirection names 'Transmission Front' …)";
+        return Err(Error::input(Location::new(file, 0, 0), message));
+    }
+    Ok(sides)
+}
+
+/// CIE X and Z from Y and the trees of u' and v' (CIE 15: x = 9u'/(6u' - 16v' + 12), y = 4v'/(same)).
+fn chromaticity(luminous: &Table, u: &Table, v: &Table) -> Option<[Vec<f32>; 2]> {
+    let (Table::Tree(y), Table::Tree(u), Table::Tree(v)) = (luminous, u, v) else { return None };
+    let from = |ratio: fn(f64, f64) -> f64| {
+        let mapped = y.map_leaves(|leaf, value| {
+            let middle = leaf.corner.map(|c| c + 0.5 * leaf.size);
+            let (u, v) = (f64::from(u.value(middle)), f64::from(v.value(middle)));
+            if v > 0.0 { (f64::from(value) * ratio(u, v).max(0.0)) as f32 } else { value }
+        });
+        mapped.into_values()
+    };
+    Some([from(|u, v| 9.0 * u / (4.0 * v)), from(|u, v| (12.0 - 3.0 * u - 20.0 * v) / (4.0 * v))])
+}
