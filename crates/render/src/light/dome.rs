@@ -3,24 +3,28 @@
 use std::f64::consts::PI;
 use sunpeak_core::{Rgb, Vec3, luminance};
 
-/// Cells between nadir and zenith, equal steps of the height z.
-const HEIGHTS: usize = 256;
+/// Cells between nadir and zenith, equal steps of the height z. With the azimuths: cells of 4e-4 sr, about a degree wide.
+const HEIGHTS: usize = 128;
 /// Cells around.
-const AZIMUTHS: usize = 512;
+const AZIMUTHS: usize = 256;
+/// Cells of a row are searched in blocks of as many as fill a cache line, by way of the blocks' sums.
+const BLOCK: usize = 16;
+const BLOCKS: usize = AZIMUTHS / BLOCK;
 /// The brightness of a cell is the mean of so many by so many points.
 const POINTS: usize = 2;
 /// Every cell gets at least this share of the mean brightness, so that no light is missed where a cell's points saw none.
 const FLOOR: f64 = 1e-3;
 
-/// A piecewise constant density over the sphere.
+/// A piecewise constant density over the sphere. The running sums are the density: what they lose to rounding, samples and
+/// density lose alike.
 #[derive(Debug)]
 pub(crate) struct Dome {
-    /// Cumulated weight of the rows, from 0 to 1.
-    rows: Vec<f64>,
-    /// Cumulated weight within each row, from 0 to 1.
-    cells: Vec<f64>,
-    /// Density of each cell [1/sr].
-    density: Vec<f64>,
+    /// Running sums of the rows, up to 1.
+    rows: Vec<f32>,
+    /// Running sums of the blocks within each row, up to 1.
+    blocks: Vec<f32>,
+    /// Running sums of the cells within each row, up to 1.
+    cells: Vec<f32>,
 }
 
 impl Dome {
@@ -34,13 +38,9 @@ impl Dome {
         }
         weights.iter_mut().for_each(|w| *w = w.max(FLOOR * mean));
         let row_sums: Vec<f64> = weights.chunks_exact(AZIMUTHS).map(|row| row.iter().sum()).collect();
-        let whole: f64 = row_sums.iter().sum();
-        let cell_solid_angle = 4.0 * PI / weights.len() as f64;
-        Some(Self {
-            rows: cumulated(&row_sums),
-            cells: weights.chunks_exact(AZIMUTHS).flat_map(cumulated_row).collect(),
-            density: weights.iter().map(|w| w / whole / cell_solid_angle).collect(),
-        })
+        let cells: Vec<f32> = weights.chunks_exact(AZIMUTHS).flat_map(running_sums).collect();
+        let blocks = cells.iter().skip(BLOCK - 1).step_by(BLOCK).copied().collect();
+        Some(Self { rows: running_sums(&row_sums), blocks, cells })
     }
 
     /// Density [1/sr].
@@ -48,22 +48,35 @@ impl Dome {
         let height = (0.5 * (direction.z + 1.0) * HEIGHTS as f64) as usize;
         let turn = direction.y.atan2(direction.x) / (2.0 * PI);
         let azimuth = ((turn - turn.floor()) * AZIMUTHS as f64) as usize;
-        self.density[height.min(HEIGHTS - 1) * AZIMUTHS + azimuth.min(AZIMUTHS - 1)]
+        self.density(height.min(HEIGHTS - 1), azimuth.min(AZIMUTHS - 1))
     }
 
     /// A direction and its density [1/sr].
     pub fn sample(&self, [u, v]: [f64; 2]) -> (Vec3, f64) {
-        let (row, height) = pick(&self.rows, u);
-        let (cell, turn) = pick(&self.cells[row * AZIMUTHS..(row + 1) * AZIMUTHS], v);
+        let row = step(&self.rows, u);
+        let block = row * BLOCKS + step(&self.blocks[row * BLOCKS..(row + 1) * BLOCKS], v);
+        let cell = block * BLOCK + step(&self.cells[block * BLOCK..(block + 1) * BLOCK], v) - row * AZIMUTHS;
+        let height = within(&self.rows, row, u);
+        let turn = within(self.row(row), cell, v);
         let z = 2.0 * (row as f64 + height) / HEIGHTS as f64 - 1.0;
         let phi = 2.0 * PI * (cell as f64 + turn) / AZIMUTHS as f64;
-        (direction(z, phi), self.density[row * AZIMUTHS + cell])
+        (direction(z, phi), self.density(row, cell))
+    }
+
+    fn row(&self, row: usize) -> &[f32] {
+        &self.cells[row * AZIMUTHS..(row + 1) * AZIMUTHS]
+    }
+
+    fn density(&self, row: usize, cell: usize) -> f64 {
+        let cell_solid_angle = 4.0 * PI / (HEIGHTS * AZIMUTHS) as f64;
+        width(&self.rows, row) * width(self.row(row), cell) / cell_solid_angle
     }
 }
 
 fn direction(z: f64, phi: f64) -> Vec3 {
     let r = (1.0 - z * z).max(0.0).sqrt();
-    Vec3::new(r * phi.cos(), r * phi.sin(), z)
+    let (sin, cos) = phi.sin_cos();
+    Vec3::new(r * cos, r * sin, z)
 }
 
 fn cell_mean(radiance: &impl Fn(Vec3) -> Rgb, row: usize, cell: usize) -> f64 {
@@ -77,24 +90,34 @@ fn cell_mean(radiance: &impl Fn(Vec3) -> Rgb, row: usize, cell: usize) -> f64 {
 }
 
 /// Running sums, normalised to end at 1.
-fn cumulated(weights: &[f64]) -> Vec<f64> {
+pub(super) fn running_sums(weights: &[f64]) -> Vec<f32> {
     let whole: f64 = weights.iter().sum();
-    weights
-        .iter()
-        .scan(0.0, |sum, w| {
-            *sum += w / whole;
-            Some(*sum)
-        })
-        .collect()
+    let mut sum = 0.0;
+    let mut add = |w: &f64| {
+        sum += w / whole;
+        sum as f32
+    };
+    weights.iter().map(&mut add).collect()
 }
 
-fn cumulated_row(row: &[f64]) -> Vec<f64> {
-    cumulated(row)
+/// The step of running sums into which `u` falls, and where in it, 0 to 1.
+pub(super) fn pick(sums: &[f32], u: f64) -> (usize, f64) {
+    let i = step(sums, u);
+    (i, within(sums, i, u))
 }
 
-/// The step of the running sums into which `u` falls, and where in it, 0 to 1.
-pub(crate) fn pick(cumulated: &[f64], u: f64) -> (usize, f64) {
-    let step = cumulated.partition_point(|&c| c <= u).min(cumulated.len() - 1);
-    let low = if step > 0 { cumulated[step - 1] } else { 0.0 };
-    (step, ((u - low) / (cumulated[step] - low)).clamp(0.0, 1.0 - f64::EPSILON))
+fn step(sums: &[f32], u: f64) -> usize {
+    sums.partition_point(|&sum| f64::from(sum) <= u).min(sums.len() - 1)
+}
+
+fn before(sums: &[f32], step: usize) -> f64 {
+    if step > 0 { f64::from(sums[step - 1]) } else { 0.0 }
+}
+
+fn width(sums: &[f32], step: usize) -> f64 {
+    f64::from(sums[step]) - before(sums, step)
+}
+
+fn within(sums: &[f32], step: usize, u: f64) -> f64 {
+    ((u - before(sums, step)) / width(sums, step)).clamp(0.0, 1.0 - f64::EPSILON)
 }

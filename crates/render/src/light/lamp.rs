@@ -1,7 +1,7 @@
 //! Emitting surfaces in the room.
 
 use super::LightSample;
-use super::dome::pick;
+use super::dome::{pick, running_sums};
 use crate::material::Emitter;
 use crate::shapes::{Cone, Ring, Sphere, Triangle};
 use std::f64::consts::PI;
@@ -11,7 +11,7 @@ use sunpeak_core::{Frame, Vec3};
 #[derive(Clone, Debug)]
 pub(crate) enum LampShape {
     /// A polygon, in triangles.
-    Triangles { triangles: Vec<Triangle>, cumulated: Vec<f64>, normal: Vec3, area: f64 },
+    Triangles { triangles: Vec<Triangle>, cumulated: Vec<f32>, normal: Vec3, area: f64 },
     /// A sphere or bubble.
     Sphere(Sphere),
     /// A cone, cylinder, cup or tube.
@@ -31,15 +31,9 @@ pub(crate) struct Lamp {
 impl LampShape {
     /// `None` if the triangles have no area.
     pub fn triangles(triangles: Vec<Triangle>, normal: Vec3) -> Option<Self> {
-        let area: f64 = triangles.iter().map(Triangle::area).sum();
-        let mut sum = 0.0;
-        let cumulated = triangles
-            .iter()
-            .map(|t| {
-                sum += t.area() / area;
-                sum
-            })
-            .collect();
+        let areas: Vec<f64> = triangles.iter().map(Triangle::area).collect();
+        let area = areas.iter().sum();
+        let cumulated = running_sums(&areas);
         (area > 0.0).then_some(Self::Triangles { triangles, cumulated, normal, area })
     }
 
