@@ -26,7 +26,8 @@ pub fn peak_rule(name: &str) -> PyResult<PeakRule> {
     }
 }
 
-fn mode(name: &str) -> PyResult<Mode> {
+/// Reflection or transmission by its name.
+pub fn mode(name: &str) -> PyResult<Mode> {
     match name {
         "transmission" => Ok(Mode::Transmission),
         "reflection" => Ok(Mode::Reflection),

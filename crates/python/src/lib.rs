@@ -2,6 +2,7 @@
 
 mod arrays;
 mod bsdf;
+mod bsdf_report;
 mod error;
 mod fabric;
 mod glare;
@@ -18,6 +19,8 @@ use pyo3::prelude::*;
 mod _core {
     #[pymodule_export]
     use super::bsdf::PyBsdf;
+    #[pymodule_export]
+    use super::bsdf_report::{bsdf_report, exit_cells, incident_cells, probe_directions, save_split};
     #[pymodule_export]
     use super::error::InputError;
     #[pymodule_export]
