@@ -4,7 +4,7 @@
 //! precision, so the boxes are padded by more than single precision can lose. Coordinates are taken relative to the
 //! scene's centre, and a ray enters the hierarchy where it enters the scene's box: far origins cost no digits.
 
-use crate::shapes::{Analytic, Bounds, COINCIDENT, Ray, ShearedRay, Triangle};
+use crate::shapes::{Analytic, Bounds, COINCIDENT, Ray, Triangle};
 use glam::{UVec2, Vec3A};
 use obvhs::{Boundable, BvhBuildParams, aabb::Aabb, cwbvh::CwBvh, cwbvh::builder::build_cwbvh};
 use std::{cell::Cell, collections::HashMap};
@@ -63,13 +63,28 @@ pub(crate) struct Hit {
     pub object: u32,
 }
 
+/// A primitive as the leaves hold it, packed for the search.
+#[derive(Clone, Copy, Debug)]
+struct Leaf {
+    /// Of no meaning for an analytic shape.
+    triangle: Triangle,
+    /// Index among the analytic shapes, or [`NO_SHAPE`] for a triangle.
+    shape: u32,
+    object: u32,
+}
+
+const NO_SHAPE: u32 = u32::MAX;
+
 /// The hierarchy with its primitives in leaf order.
 #[derive(Debug, Default)]
 pub(crate) struct Accel {
     bvh: CwBvh,
-    primitives: Vec<Primitive>,
+    leaves: Vec<Leaf>,
+    /// Opacity and rank of each leaf's primitive.
+    precedence: Vec<(bool, u32)>,
     analytic: Vec<Analytic>,
     center: Vec3,
+    /// The padded box of everything; `None` if there is nothing.
     bounds: Option<Bounds>,
     padding: f64,
 }
@@ -94,8 +109,11 @@ impl Accel {
         let padding = BOX_PADDING + ROUNDING_PADDING * (all.max - all.min).length();
         let padded: Vec<PaddedBox> = boxes.iter().map(|b| pad(b, center, padding)).collect();
         let bvh = build_checked(&padded)?;
-        let in_leaf_order = bvh.primitive_indices.iter().map(|&i| primitives[i as usize].clone()).collect();
-        Ok(Self { bvh, primitives: in_leaf_order, analytic, center, bounds: Some(all), padding })
+        let in_leaf_order = || bvh.primitive_indices.iter().map(|&i| &primitives[i as usize]);
+        let leaves = in_leaf_order().map(Leaf::new).collect();
+        let precedence = in_leaf_order().map(|p| (p.is_opaque, p.rank)).collect();
+        let bounds = Some(widened(all, padding));
+        Ok(Self { bvh, leaves, precedence, analytic, center, bounds, padding })
     }
 
     pub fn shape(&self, index: u32) -> &Analytic {
@@ -105,18 +123,16 @@ impl Accel {
     /// Nearest crossing before `t_max`. Of surfaces at the same place an opaque one wins, then one that shows its front, then the
     /// one of higher rank, as in Radiance.
     pub fn closest(&self, ray: &Ray, t_max: f64) -> Option<Hit> {
-        let mut best: Option<(Hit, &Primitive)> = None;
-        self.crossings(ray, t_max, |hit, primitive| {
-            let is_better = match &best {
+        let mut best: Option<(Hit, usize)> = None;
+        self.crossings(ray, t_max, |hit, leaf| {
+            let is_better = match best {
                 None => true,
                 Some((old, _)) if hit.t < old.t - COINCIDENT => true,
                 Some((old, _)) if hit.object == old.object => hit.t < old.t,
-                Some((old, other)) => {
-                    self.precedence(&hit, primitive, ray) > self.precedence(old, other, ray)
-                }
+                Some((old, other)) => self.precedence(&hit, leaf, ray) > self.precedence(&old, other, ray),
             };
             if is_better {
-                best = Some((hit, primitive));
+                best = Some((hit, leaf));
             }
             Continue::UpTo(best.map_or(t_max, |(best, _)| t_max.min(best.t + COINCIDENT)))
         });
@@ -124,12 +140,15 @@ impl Accel {
     }
 
     /// Which of coincident surfaces is hit: the larger one.
-    fn precedence(&self, hit: &Hit, primitive: &Primitive, ray: &Ray) -> (bool, bool, u32) {
-        let normal = match &primitive.geometry {
-            Geometry::Triangle(t) => t.area_vector(),
-            Geometry::Analytic(i) => self.analytic[*i as usize].normal(ray.at(hit.t)),
+    #[cold]
+    fn precedence(&self, hit: &Hit, leaf: usize, ray: &Ray) -> (bool, bool, u32) {
+        let Leaf { triangle, shape, .. } = &self.leaves[leaf];
+        let normal = match *shape {
+            NO_SHAPE => triangle.area_vector(),
+            shape => self.shape(shape).normal(ray.at(hit.t)),
         };
-        (primitive.is_opaque, ray.direction.dot(normal) < 0.0, primitive.rank)
+        let (is_opaque, rank) = self.precedence[leaf];
+        (is_opaque, ray.direction.dot(normal) < 0.0, rank)
     }
 
     /// Calls `visit` for crossings before `t_max`, in no order, until it says stop. A crossing on the seam of two triangles
@@ -150,36 +169,43 @@ impl Accel {
         nearest
     }
 
-    fn crossings<'a>(&'a self, ray: &Ray, t_max: f64, mut visit: impl FnMut(Hit, &'a Primitive) -> Continue) {
+    #[inline(always)]
+    fn crossings(&self, ray: &Ray, t_max: f64, mut visit: impl FnMut(Hit, usize) -> Continue) {
         RAYS.set(RAYS.get() + 1);
-        let Some((enter, leave)) = self.bounds.and_then(|b| widened(b, self.padding).crossing(ray)) else {
-            return;
-        };
+        let Some(start) = self.entry(ray) else { return };
         let t_min = ray.start.max(NEAREST * ray.origin.abs().max_element().max(1.0));
-        let start = enter.max(0.0);
-        let mut limit = t_max.min(leave);
+        let mut limit = t_max;
         let mut single = self.single_precision(ray, start, limit);
-        let sheared = ShearedRay::new(ray);
         let mut state = self.bvh.new_traversal(single.direction);
         let mut node;
         'search: {
             obvhs::traverse!(self.bvh, node, state, node.intersect_ray(&single, state.oct_inv4), {
-                let primitive = &self.primitives[state.primitive_id as usize];
-                let found = match &primitive.geometry {
-                    Geometry::Triangle(t) => [t.crossing(&sheared), f64::INFINITY],
-                    Geometry::Analytic(i) => ordered(self.analytic[*i as usize].crossings(ray)),
+                let index = state.primitive_id as usize;
+                let leaf = &self.leaves[index];
+                let [mut t, mut next] = match leaf.shape {
+                    NO_SHAPE => [leaf.triangle.crossing(ray), f64::INFINITY],
+                    shape => ordered(self.shape(shape).crossings(ray)),
                 };
-                for t in found {
-                    if t > t_min && t < limit {
-                        match visit(Hit { t, object: primitive.object }, primitive) {
+                while t < limit {
+                    if t > t_min {
+                        match visit(Hit { t, object: leaf.object }, index) {
                             Continue::UpTo(t) => limit = t,
                             Continue::Stop => break 'search,
                         }
                         single.tmax = self.single_limit(limit - start);
                     }
+                    (t, next) = (next, f64::INFINITY);
                 }
             });
         }
+    }
+
+    /// Where the ray enters the scene's box, 0 from inside; `None` if it misses it.
+    #[inline(always)]
+    fn entry(&self, ray: &Ray) -> Option<f64> {
+        let bounds = self.bounds?;
+        let is_inside = ray.origin.cmpge(bounds.min).all() && ray.origin.cmple(bounds.max).all();
+        if is_inside { Some(0.0) } else { bounds.crossing(ray).map(|(enter, _)| enter.max(0.0)) }
     }
 
     fn single_precision(&self, ray: &Ray, start: f64, limit: f64) -> obvhs::ray::Ray {
@@ -201,6 +227,16 @@ enum Continue {
 
 fn ordered([a, b]: [f64; 2]) -> [f64; 2] {
     if b < a { [b, a] } else { [a, b] }
+}
+
+impl Leaf {
+    fn new(primitive: &Primitive) -> Self {
+        let (triangle, shape) = match primitive.geometry {
+            Geometry::Triangle(triangle) => (triangle, NO_SHAPE),
+            Geometry::Analytic(shape) => (Triangle([Vec3::NAN; 3]), shape),
+        };
+        Self { triangle, shape, object: primitive.object }
+    }
 }
 
 fn bounds_of(primitive: &Primitive, analytic: &[Analytic]) -> Bounds {
@@ -302,11 +338,10 @@ mod tests {
         ray: &Ray,
         t_min: f64,
     ) -> Vec<(f64, u32)> {
-        let sheared = ShearedRay::new(ray);
         let mut all = Vec::new();
         for p in primitives {
             let ts = match &p.geometry {
-                Geometry::Triangle(t) => [t.crossing(&sheared), f64::INFINITY],
+                Geometry::Triangle(t) => [t.crossing(ray), f64::INFINITY],
                 Geometry::Analytic(i) => analytic[*i as usize].crossings(ray),
             };
             all.extend(ts.into_iter().filter(|t| *t > t_min && t.is_finite()).map(|t| (t, p.object)));

@@ -7,7 +7,7 @@
 //! the rest from the surface's own lobes. The density of the mixture is known, so nothing is biased (Veach 1997, section 9.2:
 //! one-sample model with the balance heuristic).
 
-use crate::shapes::{Ray, ShearedRay, Triangle};
+use crate::shapes::{Ray, Triangle};
 use std::f64::consts::PI;
 use sunpeak_core::{Frame, Vec3};
 
@@ -102,7 +102,7 @@ impl Guide {
         if self.shades.is_empty() {
             return 0.0;
         }
-        let ray = ShearedRay::new(&Ray::new(point, direction));
+        let ray = Ray::new(point, direction);
         let (mut whole, mut sum) = (0.0, 0.0);
         for triangle in &self.shades {
             let importance = Self::importance(triangle, point);

@@ -10,7 +10,7 @@ pub(crate) use cone::Cone;
 pub(crate) use polygon::Polygon;
 pub(crate) use ring::Ring;
 pub(crate) use sphere::Sphere;
-pub(crate) use triangle::{ShearedRay, Triangle};
+pub(crate) use triangle::Triangle;
 
 use sunpeak_core::Vec3;
 

@@ -1,7 +1,8 @@
 //! Triangles, without leaks between neighbours.
 //!
-//! Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection", Journal of Computer Graphics Techniques 2 (1).
-//! Edges belong to both their triangles, so a closest hit never slips through a seam.
+//! Which side of an edge a ray passes is the sign of the triple product of its direction and the edge's corners, taken from
+//! the ray's origin. With the corners swapped, as the neighbour has them, it is exactly the negative, rounding included; and
+//! edges belong to both their triangles. So a closest hit never slips through a seam.
 
 use super::{Bounds, Ray};
 use sunpeak_core::Vec3;
@@ -10,53 +11,24 @@ use sunpeak_core::Vec3;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Triangle(pub [Vec3; 3]);
 
-/// A ray in the coordinates in which it runs along +z: axes permuted so that z is its largest component, then sheared.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct ShearedRay {
-    origin: Vec3,
-    axes: [usize; 3],
-    shear: Vec3,
-}
-
-impl ShearedRay {
-    pub fn new(ray: &Ray) -> Self {
-        let size = ray.direction.abs();
-        let z = if size.x > size.y && size.x > size.z {
-            0
-        } else if size.y > size.z {
-            1
-        } else {
-            2
-        };
-        let axes = [(z + 1) % 3, (z + 2) % 3, z];
-        let d = ray.direction;
-        let shear = Vec3::new(d[axes[0]] / d[z], d[axes[1]] / d[z], 1.0 / d[z]);
-        Self { origin: ray.origin, axes, shear }
-    }
-
-    /// The point relative to the ray: x, y sheared, z not yet scaled.
-    #[inline(always)]
-    fn place(&self, point: Vec3) -> Vec3 {
-        let p = point - self.origin;
-        let [x, y, z] = self.axes.map(|axis| p[axis]);
-        Vec3::new(x - self.shear.x * z, y - self.shear.y * z, z)
-    }
-}
-
 impl Triangle {
     /// Distance at which the ray crosses the triangle, from either side; infinity if it does not.
     #[inline(always)]
-    pub fn crossing(&self, ray: &ShearedRay) -> f64 {
-        let [a, b, c] = self.0.map(|v| ray.place(v));
-        let (u, v, w) = (c.x * b.y - c.y * b.x, a.x * c.y - a.y * c.x, b.x * a.y - b.y * a.x);
-        if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
+    pub fn crossing(&self, ray: &Ray) -> f64 {
+        let [a, b, c] = self.0.map(|corner| corner - ray.origin);
+        let d = ray.direction;
+        let (u, v, w) = (d.dot(c.cross(b)), d.dot(a.cross(c)), d.dot(b.cross(a)));
+        let is_left = (u < 0.0) | (v < 0.0) | (w < 0.0);
+        let is_right = (u > 0.0) | (v > 0.0) | (w > 0.0);
+        if is_left && is_right {
             return f64::INFINITY;
         }
-        let determinant = u + v + w;
-        if determinant == 0.0 {
+        let whole = u + v + w;
+        if whole == 0.0 {
             return f64::INFINITY;
         }
-        (u * a.z + v * b.z + w * c.z) * ray.shear.z / determinant
+        // The weights of the corners give the point, from the origin: its distance.
+        (u * d.dot(a) + v * d.dot(b) + w * d.dot(c)) / whole
     }
 
     pub fn area(&self) -> f64 {
@@ -85,8 +57,8 @@ mod tests {
     use super::*;
     use sunpeak_core::{Sampler, warp};
 
-    fn ray(origin: Vec3, direction: Vec3) -> ShearedRay {
-        ShearedRay::new(&Ray::new(origin, direction.normalize()))
+    fn ray(origin: Vec3, direction: Vec3) -> Ray {
+        Ray::new(origin, direction.normalize())
     }
 
     #[test]
