@@ -4,7 +4,6 @@ use crate::{
     distribution::Distribution,
     peak::{PeakRule, reference},
     proposal::{Oriented, Proposal},
-    table::Table,
     xml::Document,
 };
 use glam::DVec2;
@@ -194,9 +193,7 @@ impl Bsdf {
         };
         let lobe = self.lobe(w_in, mode)?;
         let p_in = incident_point(w_in);
-        let residual = rule == PeakRule::Split;
-        let value = |p_out| luminance(lobe.oriented.value(p_in, p_out, residual));
-        let sampled = lobe.proposal(rule).sample(p_in, [first, u[1], u[2]], value)?;
+        let sampled = lobe.proposal(rule).sample(p_in, [first, u[1], u[2]])?;
         let height = (1.0 - sampled.p_out.length_squared()).max(0.0).sqrt();
         let above = (w_in.z > 0.0) == reflect;
         let w_out = sampled.p_out.extend(if above { height } else { -height });
@@ -205,8 +202,7 @@ impl Bsdf {
         if pdf <= 0.0 {
             return None;
         }
-        let weight = lobe.oriented.value(p_in, sampled.p_out, residual) / (sampled.density * chosen);
-        Some(Sample { w_out, weight, pdf })
+        Some(Sample { w_out, weight: sampled.value / (sampled.density * chosen), pdf })
     }
 
     /// Density [1/sr] of [`Self::sample_smooth`].

@@ -142,6 +142,11 @@ impl Tree {
         self.visit(0, [0.0; 4], 1.0, &[(0.0, 1.0); 4], &mut visit);
     }
 
+    /// Visit the cells that overlap the bounds of each coordinate; bounds of no width are a point.
+    pub fn for_each_leaf_in(&self, bounds: &[(f64, f64); 4], mut visit: impl FnMut(&Leaf)) {
+        self.visit(0, [0.0; 4], 1.0, bounds, &mut visit);
+    }
+
     /// Visit the cells over the incident position (the first `rank - 2` coordinates).
     pub fn for_each_leaf_over(&self, incident: &[f64], mut visit: impl FnMut(&Leaf)) {
         let mut bounds = [(0.0, 1.0); 4];

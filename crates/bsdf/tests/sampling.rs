@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{directions, fabrics, halton, random, shared_bsdfs};
+use common::{directions, fabrics, halton, one_sided, random, shared_bsdfs};
 use glam::DVec2;
 use std::f64::consts::PI;
 use sunpeak_bsdf::{
@@ -15,7 +15,7 @@ use sunpeak_core::{Vec3, luminance};
 const RULES: [PeakRule; 2] = [PeakRule::Off, PeakRule::Split];
 
 fn every_bsdf() -> Vec<(String, Bsdf)> {
-    fabrics().into_iter().chain(shared_bsdfs()).collect()
+    fabrics().into_iter().chain(one_sided()).chain(shared_bsdfs()).collect()
 }
 
 /// Cells a side of [`grid`]: a multiple of every tree's.
@@ -104,6 +104,17 @@ fn chi_square(bsdf: &Bsdf, w_in: Vec3, rule: PeakRule) -> Option<(f64, f64)> {
         }
     }
     Some((chi, groups))
+}
+
+#[test]
+fn tables_of_one_side_have_a_peak_to_leave_out() {
+    for (name, bsdf) in one_sided() {
+        for front in [true, false] {
+            let through = |w: &Vec3| luminance(bsdf.through(*w, PeakRule::Split)) > 0.0;
+            let count = directions(40, front).iter().filter(|w| through(w)).count();
+            assert!(count > 20, "{name} {front}: {count} of 40");
+        }
+    }
 }
 
 #[test]

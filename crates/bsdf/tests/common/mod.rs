@@ -2,9 +2,14 @@
 #![allow(dead_code, missing_docs, clippy::unwrap_used)]
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use sunpeak_bsdf::{
-    Bsdf,
+    Bsdf, Distribution, Sides,
+    basis::AngleBasis,
     synthetic::{Basis, Fabric},
+    table::{Matrix, Table},
+    tree::{Tree, TreeBuilder},
+    xml::Document,
 };
 use sunpeak_core::Vec3;
 
@@ -70,4 +75,63 @@ pub fn random(i: u32) -> f64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+}
+
+/// A tree with cells of different sizes: fine along the straight direction, finest in half of the incident square; the cells on the
+/// straight direction hold a peak.
+pub fn mixed_tree(rank: usize) -> Tree {
+    fn place(builder: &mut TreeBuilder, rank: usize, corner: [f64; 4], size: f64) {
+        let gap = |a: usize, b: usize| ((corner[a] - corner[b]).abs() - size).max(0.0);
+        let (away, straight) = if rank == 3 {
+            // The straight direction runs along (1 - x, 1/2).
+            let (y, z) = (1.0 - corner[0] - size, 0.5);
+            let from = |d: usize, at: f64| (corner[d] - at).max(at - corner[d] - size).max(0.0);
+            (from(1, y).max(from(2, z)), corner[1] == y && from(2, z) < 1e-9)
+        } else {
+            (gap(0, 2).max(gap(1, 3)), corner[0] == corner[2] && corner[1] == corner[3])
+        };
+        let smallest = if corner[0] < 0.25 { 1.0 / 32.0 } else { 1.0 / 8.0 };
+        builder.open().unwrap();
+        if size <= smallest || (size <= 0.25 && away > 0.2) {
+            let peak = if straight { 0.03 / (size * size) } else { 0.0 };
+            builder.value((0.02 + 0.1 * (-8.0 * away).exp() + 0.01 * corner[1] + peak) as f32).unwrap();
+        } else {
+            for child in 0..1usize << rank {
+                let upper = |d: usize| if child >> d & 1 == 1 { size / 2.0 } else { 0.0 };
+                place(builder, rank, std::array::from_fn(|d| corner[d] + upper(d)), size / 2.0);
+            }
+        }
+        builder.close().unwrap();
+    }
+    let mut builder = TreeBuilder::new(rank, 1 << 20);
+    place(&mut builder, rank, [0.0; 4], 1.0);
+    builder.finish().unwrap()
+}
+
+/// A basis of one's own with many patches.
+pub fn fine_basis() -> Arc<AngleBasis> {
+    let rings: Vec<(f64, usize)> =
+        (0..18).map(|i| (5.0 * f64::from(i + 1), if i == 0 { 1 } else { 36 })).collect();
+    Arc::new(AngleBasis::new("fine", &rings).unwrap())
+}
+
+/// Tables in which sampling has to search within blocks; with one transmission only, so that it serves both sides.
+pub fn one_sided() -> Vec<(String, Bsdf)> {
+    let basis = fine_basis();
+    let n = basis.len();
+    let value = |i: usize| if i % n == i / n { 1.0 } else { 0.02 + 0.01 * random(i as u32) as f32 };
+    let values = (0..n * n).map(value).collect();
+    let matrix = Matrix { incident: basis.clone(), exiting: basis, values };
+    [
+        ("fine matrix", "Columns", Table::Matrix(matrix)),
+        ("mixed t3", "TensorTree3", Table::Tree(mixed_tree(3))),
+        ("mixed t4", "TensorTree4", Table::Tree(mixed_tree(4))),
+    ]
+    .into_iter()
+    .map(|(name, structure, table)| {
+        let document = Document { structure: structure.into(), ..Document::default() };
+        let transmission_front = Some(Arc::new(Distribution::with_split(table, None)));
+        (name.to_owned(), Bsdf::from_sides(document, Sides { transmission_front, ..Sides::default() }))
+    })
+    .collect()
 }
