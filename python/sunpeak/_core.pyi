@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from os import PathLike
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,15 @@ class Bsdf:
     def describe(self) -> dict[str, Any]: ...
     def peak_evidence(self, w_in: _Floats) -> _Floats: ...
     def pdf(self, w_in: _Floats, w_out: _Floats, peak: str) -> _Floats: ...
+
+def bsdf_report(bsdf: Bsdf) -> dict[str, Any]: ...
+def save_split(bsdf: Bsdf, folder: str | PathLike[str]) -> list[Path]: ...
+def exit_cells(
+    bsdf: Bsdf, w_in: _Floats, mode_name: str, edge_points: int
+) -> tuple[_Floats, _Floats, npt.NDArray[np.bool_]]: ...
+def incident_cells(bsdf: Bsdf, front: bool, edge_points: int) -> tuple[_Floats, dict[str, _Floats]]: ...
+def through_interval(bsdf: Bsdf, w_in: _Floats) -> _Floats: ...
+def probe_directions(bsdf: Bsdf, w_in: _Floats) -> _Floats: ...
 
 class Sky:
     @staticmethod
@@ -134,6 +144,7 @@ def render(
     height: int,
     samples: int | None,
     time_s: float | None,
+    error: float | None,
     seed: int,
     threads: int | None,
     max_bounces: int | None,
@@ -146,6 +157,7 @@ def trace(
     irradiance: bool,
     samples: int | None,
     time_s: float | None,
+    error: float | None,
     seed: int,
     threads: int | None,
     max_bounces: int | None,

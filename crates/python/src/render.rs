@@ -28,11 +28,12 @@ impl PyWorld {
 fn options(
     samples: Option<u32>,
     time_s: Option<f64>,
+    error: Option<f64>,
     seed: u64,
     threads: Option<usize>,
     max_bounces: Option<u32>,
 ) -> RenderOptions {
-    RenderOptions { samples, time_s, seed, threads, max_bounces, ..RenderOptions::default() }
+    RenderOptions { samples, time_s, error, seed, threads, max_bounces, ..RenderOptions::default() }
 }
 
 /// Render a picture; `progress` is called with the work done and in all.
@@ -46,12 +47,13 @@ pub fn render(
     height: usize,
     samples: Option<u32>,
     time_s: Option<f64>,
+    error: Option<f64>,
     seed: u64,
     threads: Option<usize>,
     max_bounces: Option<u32>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<PyPicture> {
-    let options = options(samples, time_s, seed, threads, max_bounces);
+    let options = options(samples, time_s, error, seed, threads, max_bounces);
     let picture = run_watched(py, progress.as_ref(), |control| {
         render_picture(&world.0, &view.0, width, height, &options, control)
     })?;
@@ -69,12 +71,13 @@ pub fn trace<'py>(
     irradiance: bool,
     samples: Option<u32>,
     time_s: Option<f64>,
+    error: Option<f64>,
     seed: u64,
     threads: Option<usize>,
     max_bounces: Option<u32>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Rows<'py>> {
-    let options = options(samples, time_s, seed, threads, max_bounces);
+    let options = options(samples, time_s, error, seed, threads, max_bounces);
     let (points, towards) = (vectors(&origins, "origins")?, vectors(&directions, "directions")?);
     if points.len() != towards.len() {
         return Err(InputError::new_err("origins and directions: expected as many rows of both"));

@@ -31,7 +31,13 @@ pub fn render_picture(
     let film = Film { camera, width, height, seed: options.seed };
     let integrator = Integrator { world, limits: Limits::of(options), exact_suns: exact_suns.as_ref() };
     let reports = Reports { control, rays: &world.rays };
-    let means = estimate(width * height, options, reports, |pixel, s| film.sample(&integrator, pixel, s))?;
+    let means = estimate(
+        width * height,
+        options,
+        reports,
+        |pixel| film.block(pixel),
+        |pixel, s| film.sample(&integrator, pixel, s),
+    )?;
     let mut picture = Picture {
         width,
         height,
@@ -54,7 +60,15 @@ struct Film {
     seed: u64,
 }
 
+/// Edge of the blocks of pixels whose error counts [pixels].
+const BLOCK: usize = 8;
+
 impl Film {
+    fn block(&self, pixel: usize) -> u32 {
+        let (column, row) = (pixel % self.width, pixel / self.width);
+        (row / BLOCK * self.width.div_ceil(BLOCK) + column / BLOCK) as u32
+    }
+
     fn sample(&self, integrator: &Integrator, pixel: usize, index: u64) -> Rgb {
         let mut sampler = Sampler::new(self.seed, pixel as u64, index);
         let [u, v] = sampler.next_2d();
@@ -86,5 +100,6 @@ fn software() -> String {
 fn settings(world: &World, options: &RenderOptions, means: &Means) -> String {
     let bounces = options.max_bounces.map_or(String::new(), |n| format!(" max_bounces={n}"));
     let peak = format!("{:?}", world.peak_rule()).to_lowercase();
-    format!("SUNPEAK_RENDER= peak={peak} samples={} seed={}{bounces}", means.samples, options.seed)
+    let error = means.error.map_or(String::new(), |e| format!(" error={e:.5}"));
+    format!("SUNPEAK_RENDER= peak={peak} samples={} seed={}{bounces}{error}", means.samples, options.seed)
 }

@@ -57,6 +57,7 @@ mod options;
 mod passes;
 mod sensor;
 mod shapes;
+mod stopping;
 #[cfg(test)]
 mod testing;
 mod transmit;

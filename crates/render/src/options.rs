@@ -18,6 +18,10 @@ pub struct RenderOptions {
     /// Paths for each pixel, ray or sensor; powers of two converge best. With `time_s` the most that are traced; with neither,
     /// [`DEFAULT_SAMPLES`].
     pub samples: Option<u32>,
+    /// Stop when the standard error is this small [-]: the root mean square over blocks of 8 by 8 pixels (over rays or sensors) of the
+    /// standard error of their luminance, relative to the mean luminance of all. Exact suns have none. With `samples` or
+    /// `time_s` whatever comes first.
+    pub error: Option<f64>,
     /// Time to spend [s]: passes go on until the next one would not fit. At least one path each.
     pub time_s: Option<f64>,
     /// The same seed and number of paths give the same result, on any number of threads.
@@ -44,6 +48,7 @@ impl Default for RenderOptions {
     fn default() -> Self {
         Self {
             samples: None,
+            error: None,
             time_s: None,
             seed: 0,
             max_bounces: None,

@@ -3,6 +3,7 @@
 //! Each item adds its own samples in order, so the result does not depend on threads.
 
 use crate::accel::rays_of_this_thread;
+use crate::stopping::ErrorEstimate;
 use crate::{DEFAULT_SAMPLES, RenderOptions};
 use rayon::prelude::*;
 use std::sync::Mutex;
@@ -23,6 +24,8 @@ const UNITS_PER_SECOND: f64 = 100.0;
 pub(crate) struct Means {
     pub values: Vec<Rgb>,
     pub samples: u32,
+    /// Relative standard error, where a goal was set for it (see [`RenderOptions::error`]).
+    pub error: Option<f64>,
 }
 
 /// Where finished work is reported.
@@ -33,11 +36,12 @@ pub(crate) struct Reports<'a> {
     pub rays: &'a AtomicU64,
 }
 
-/// Estimate `items` values; `sample(item, index)` is one estimate of one of them.
+/// Estimate `items` values; `sample(item, index)` is one estimate of one of them. `group` says whose error counts together.
 pub(crate) fn estimate(
     items: usize,
     options: &RenderOptions,
     reports: Reports,
+    group: impl Fn(usize) -> u32,
     sample: impl Fn(usize, u64) -> Rgb + Sync,
 ) -> Result<Means> {
     let goal = Goal::new(items, options)?;
@@ -46,13 +50,15 @@ pub(crate) fn estimate(
         .build()
         .map_err(|e| Error::value(format!("cannot start {:?} threads: {e}", options.threads)))?;
     goal.announce(reports.control);
-    pool.install(|| run(items, &goal, reports, &sample))
+    let error = options.error.map(|_| ErrorEstimate::new((0..items).map(group).collect()));
+    pool.install(|| run(items, &goal, reports, error, &sample))
 }
 
 fn run(
     items: usize,
     goal: &Goal,
     reports: Reports,
+    mut error: Option<ErrorEstimate>,
     sample: &(impl Fn(usize, u64) -> Rgb + Sync),
 ) -> Result<Means> {
     let mut sums = vec![Rgb::ZERO; items];
@@ -71,15 +77,22 @@ fn run(
         });
         reports.control.check()?;
         done += pass;
+        if let Some(error) = &mut error {
+            error.add(&sums, done);
+            if error.relative().is_some_and(|e| goal.error.is_some_and(|goal| e <= goal)) {
+                break;
+            }
+        }
     }
     let values = sums.into_iter().map(|sum| sum / f64::from(done)).collect();
-    Ok(Means { values, samples: done })
+    Ok(Means { values, samples: done, error: error.and_then(|e| e.relative()) })
 }
 
 /// When to stop.
 struct Goal {
     items: u64,
     samples: u32,
+    error: Option<f64>,
     time: Option<Duration>,
     start: Instant,
     /// Units of progress reported so far, where the goal is a time.
@@ -94,15 +107,25 @@ impl Goal {
         if options.threads == Some(0) {
             return Err(Error::value("the number of threads is 0; leave it out for all cores"));
         }
+        if let Some(error) = options.error.filter(|e| e.is_nan() || *e <= 0.0) {
+            return Err(Error::value(format!("the error is {error}; it must be positive")));
+        }
         let time = match options.time_s {
             None => None,
             Some(s) => {
                 Some(Duration::try_from_secs_f64(s).map_err(|_| Error::value(format!("the time is {s} s")))?)
             }
         };
-        let unlimited = if time.is_some() { u32::MAX } else { DEFAULT_SAMPLES };
+        let unlimited = if time.is_some() || options.error.is_some() { u32::MAX } else { DEFAULT_SAMPLES };
         let samples = options.samples.unwrap_or(unlimited);
-        Ok(Self { items: items as u64, samples, time, start: Instant::now(), reported: Mutex::new(0) })
+        Ok(Self {
+            items: items as u64,
+            samples,
+            error: options.error,
+            time,
+            start: Instant::now(),
+            reported: Mutex::new(0),
+        })
     }
 
     fn announce(&self, control: &Control) {
@@ -150,9 +173,14 @@ mod tests {
         let one = |threads| {
             let options = RenderOptions { samples: Some(37), threads: Some(threads), ..Default::default() };
             let control = Control::new();
-            let means =
-                estimate(1000, &options, reports(&control), |i, s| Rgb::splat(i as f64 + (s as f64).sqrt()))
-                    .expect("runs");
+            let means = estimate(
+                1000,
+                &options,
+                reports(&control),
+                |i| i as u32,
+                |i, s| Rgb::splat(i as f64 + (s as f64).sqrt()),
+            )
+            .expect("runs");
             assert_eq!((means.samples, control.progress()), (37, (37_000, 37_000)));
             means.values
         };
@@ -170,12 +198,12 @@ mod tests {
             std::thread::sleep(Duration::from_millis(1));
             Rgb::ONE
         };
-        let means = estimate(5, &options, reports(&Control::new()), slow).expect("runs");
+        let means = estimate(5, &options, reports(&Control::new()), |i| i as u32, slow).expect("runs");
         assert!(means.samples >= 8 && start.elapsed().as_secs_f64() < 0.4);
         let control = Control::new();
         control.stop();
         assert!(matches!(
-            estimate(5, &RenderOptions::default(), reports(&control), slow),
+            estimate(5, &RenderOptions::default(), reports(&control), |i| i as u32, slow),
             Err(Error::Interrupted)
         ));
     }
@@ -187,7 +215,7 @@ mod tests {
             RenderOptions { threads: Some(0), ..Default::default() },
             RenderOptions { time_s: Some(f64::NAN), ..Default::default() },
         ] {
-            assert!(estimate(1, &options, reports(&Control::new()), |_, _| Rgb::ONE).is_err());
+            assert!(estimate(1, &options, reports(&Control::new()), |i| i as u32, |_, _| Rgb::ONE).is_err());
         }
     }
 }

@@ -23,7 +23,8 @@ pub fn trace_radiance(
         let mut sampler = Sampler::new(options.seed, item as u64, index);
         integrator.radiance(Ray::new(origin, direction), f64::INFINITY, &mut sampler)
     };
-    Ok(estimate(rays.len(), options, Reports { control, rays: &world.rays }, sample)?.values)
+    Ok(estimate(rays.len(), options, Reports { control, rays: &world.rays }, |item| item as u32, sample)?
+        .values)
 }
 
 /// Irradiance [W m⁻²] at sensors, each given by a point and a normal (of any length).
@@ -42,7 +43,8 @@ pub fn trace_irradiance(
         let (point, normal) = sensors[item];
         integrator.irradiance(point, normal, &mut Sampler::new(options.seed, item as u64, index))
     };
-    Ok(estimate(sensors.len(), options, Reports { control, rays: &world.rays }, sample)?.values)
+    Ok(estimate(sensors.len(), options, Reports { control, rays: &world.rays }, |item| item as u32, sample)?
+        .values)
 }
 
 /// Finite points and unit vectors.

@@ -1,10 +1,11 @@
 """Options that several commands share."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
+from sunpeak.cli.values import parse_percent
 from sunpeak.scattering import Peak
 from sunpeak.scenes import Scene
 
@@ -21,6 +22,15 @@ PeakRule = Annotated[
 Samples = Annotated[int | None, typer.Option(min=1, help="Paths for each pixel or ray (64).", rich_help_panel=SAMPLING)]
 Seconds = Annotated[
     float | None, typer.Option("--time", min=0, metavar="SECONDS", help="Time to spend.", rich_help_panel=SAMPLING)
+]
+Error = Annotated[
+    Any,
+    typer.Option(
+        parser=parse_percent,
+        metavar="PCT",
+        help="Go on until the luminance of blocks (of rays, sensors) is known to this standard error, in percent of the mean.",
+        rich_help_panel=SAMPLING,
+    ),
 ]
 Seed = Annotated[
     int, typer.Option(min=0, help="The same seed gives the same result, on any threads.", rich_help_panel=SAMPLING)

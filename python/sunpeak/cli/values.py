@@ -32,6 +32,17 @@ def parse_numbers(text: str) -> list[float]:
     return numbers
 
 
+def parse_percent(text: str) -> float:
+    """`1` or `1%` as 0.01."""
+    try:
+        percent = float(text.strip().removesuffix("%"))
+    except ValueError as error:
+        raise typer.BadParameter(f"{text!r}; expected a percentage, as in 1 or 0.5%") from error
+    if not (math.isfinite(percent) and percent > 0):
+        raise typer.BadParameter(f"{text!r}; expected a positive percentage")
+    return percent / 100
+
+
 def parse_place(text: str) -> Place:
     """`37.7,-122.2` or with the elevation in metres, as a place."""
     numbers = parse_numbers(text)
