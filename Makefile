@@ -22,7 +22,6 @@ export PYO3_PYTHON := $(BIN)/python
 export VIRTUAL_ENV := $(CURDIR)/$(VENV)
 # pip finds maturin here.
 export PATH := $(BIN):$(PATH)
-export PATH := $(BIN):$(PATH)
 unexport PYTHONHOME PYTHONPATH
 
 .PHONY: help build demo test test-rust test-python lint fmt bench docs lock clean
@@ -55,8 +54,9 @@ fmt: $(VENV)/.installed ## Format everything
 	$(BIN)/ruff check --fix-only .
 	$(BIN)/ruff format .
 
-bench: build ## Benchmarks
-	$(CARGO) bench --locked $(CRATES)
+bench: build ## Benchmarks: rays per second against the bare hierarchy, samples per second
+	$(CARGO) bench --locked $(CRATES) --bench '*'
+	$(BIN)/python benches/demo_room.py
 
 docs: ## The crates' documentation, into target/doc
 	$(CARGO) doc --locked $(CRATES) --no-deps
