@@ -28,7 +28,7 @@ Error = Annotated[
     typer.Option(
         parser=parse_percent,
         metavar="PCT",
-        help="Go on until the luminance of blocks (of rays, sensors) is known to this standard error, in percent of the mean.",
+        help="Go on until the luminance of blocks (or sensors) has this standard error, in percent of the mean.",
         rich_help_panel=SAMPLING,
     ),
 ]
