@@ -6,12 +6,14 @@ direction), `w_out` the other one.
 """
 
 from os import PathLike
+from pathlib import Path
 from typing import Literal, NamedTuple, TypedDict, cast
 
 import numpy as np
 import numpy.typing as npt
 
 from sunpeak import _core
+from sunpeak.bsdf_report import BsdfReport, report_on
 
 Peak = Literal["split", "radiance", "paper", "off"]
 """Which part of a table goes straight through.
@@ -92,6 +94,8 @@ class Bsdf:
     def load(cls, path: str | PathLike[str]) -> "Bsdf":
         """Read an LBNL XML file: Klems or another basis that the file defines, or a tensor tree.
 
+        A folder (or the `peak.json` in it) is read as a split that `save_split` wrote.
+
         Raises `InputError` with file, line and column where the file is not sound, `OSError` where it cannot be
         read.
         """
@@ -116,6 +120,10 @@ class Bsdf:
     def through(self, w_in: npt.ArrayLike, peak: Peak = "split", *, colour: bool = False) -> Floats:
         """Through transmittance [-] along `w_out = -w_in`: (n,), or three channels (n, 3) with `colour`."""
         return self._core.through(rows(w_in), peak, colour)
+
+    def through_interval(self, w_in: npt.ArrayLike) -> Floats:
+        """Lowest and highest through transmittance [-] that the data allow, (n, 2), by the split; nominally 95 %."""
+        return _core.through_interval(self._core, rows(w_in))
 
     def hemispherical(
         self,
@@ -145,6 +153,17 @@ class Bsdf:
         """Say what is in the file: names, warnings, and its tables by the side that rays meet."""
         return cast("Description", self._core.describe())
 
+    def peak_report(self) -> BsdfReport:
+        """Look at all of it: resolution, energy, reciprocity, what the split takes, and whether to use it and why."""
+        return report_on(self._core)
+
+    def save_split(self, folder: str | PathLike[str]) -> list[Path]:
+        """Write the split to a folder: `residual.xml`, `peak.json`, `peak.csv`, `ledger.csv`; all of them, or none.
+
+        `load` of the folder gives the same BSDF.
+        """
+        return _core.save_split(self._core, folder)
+
     def evidence(self, w_in: npt.ArrayLike) -> Evidence:
         """Say why the split took a peak, or did not, for each incident direction (n, 3)."""
         return Evidence(*self._core.peak_evidence(rows(w_in)).T)
@@ -153,6 +172,15 @@ class Bsdf:
         """Density [1/sr] with which `sample` draws `w_out` from its smooth lobe, (n,)."""
         incident, outgoing = together(w_in, w_out)
         return self._core.pdf(incident, outgoing, peak)
+
+
+def side_of_ray(theta_deg: npt.ArrayLike, phi_deg: npt.ArrayLike = 0.0) -> Floats:
+    """`w_in` (n, 3) of rays that come down at `theta_deg` from the front normal and run towards the azimuth `phi_deg`.
+
+    The ray's direction is (sin theta cos phi, sin theta sin phi, -cos theta); `w_in` is minus that. Above 90 degrees
+    it comes from behind.
+    """
+    return direction(theta_deg, np.asarray(phi_deg, dtype=float) + 180.0)
 
 
 def direction(theta_deg: npt.ArrayLike, phi_deg: npt.ArrayLike = 0.0) -> Floats:

@@ -76,6 +76,8 @@ pub struct SideReport {
     pub largest_sum_at_deg: [f64; 2],
     /// Share of the incidences (by projected solid angle) where the sum is above 1.
     pub share_above_one: f64,
+    /// Sums over the table's own cells; a tree that is met by reciprocity is summed over points.
+    pub exact: bool,
 }
 
 /// At one angle of incidence: means over azimuth, and their range.
@@ -190,6 +192,9 @@ impl Bsdf {
             largest_sum: largest,
             largest_sum_at_deg: angles(place),
             share_above_one: if all > 0.0 { above / all } else { 0.0 },
+            exact: self
+                .distribution(on_side(front, 0.0, 0.0), Mode::Transmission)
+                .is_none_or(|o| !o.reversed || matches!(o.distribution.luminous(), Table::Matrix(_))),
         }
     }
 

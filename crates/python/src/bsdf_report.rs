@@ -3,7 +3,7 @@
 use crate::arrays::{Numbers, Rows, directions, numbers, rows};
 use crate::bsdf::{PyBsdf, mode};
 use crate::error::{InputError, OrRaise};
-use numpy::{PyArray1, PyArray3, PyReadonlyArray2, ndarray::Array3};
+use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray2, ndarray::Array2, ndarray::Array3};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
@@ -66,6 +66,7 @@ fn side<'py>(py: Python<'py>, s: &SideReport) -> PyResult<Bound<'py, PyDict>> {
     about.set_item("largest_sum", s.largest_sum)?;
     about.set_item("largest_sum_at_deg", s.largest_sum_at_deg)?;
     about.set_item("share_above_one", s.share_above_one)?;
+    about.set_item("exact", s.exact)?;
     Ok(about)
 }
 
@@ -109,6 +110,19 @@ fn peak<'py>(py: Python<'py>, p: &PeakReport) -> PyResult<Bound<'py, PyDict>> {
     Ok(about)
 }
 
+/// Lowest and highest through transmittance that the data allow for each direction, (n, 2).
+#[pyfunction]
+pub fn through_interval<'py>(
+    py: Python<'py>,
+    bsdf: &PyBsdf,
+    w_in: PyReadonlyArray2<'py, f64>,
+) -> PyResult<Rows<'py>> {
+    let found: Vec<[f64; 2]> =
+        directions(&w_in, "w_in")?.into_iter().map(|w| bsdf.0.through_interval(w)).collect();
+    let array = Array2::from_shape_fn((found.len(), 2), |(row, column)| found[row][column]);
+    Ok(PyArray2::from_owned_array(py, array))
+}
+
 /// Write the split to a folder; gives the files' names.
 #[pyfunction]
 pub fn save_split(py: Python<'_>, bsdf: &PyBsdf, folder: PathBuf) -> PyResult<Vec<PathBuf>> {
@@ -131,7 +145,6 @@ fn outlines<'py>(py: Python<'py>, each: &[Vec<[f64; 2]>]) -> Outlines<'py> {
 
 /// Outlines of the exiting cells, and for each: value, residual [1/sr], projected solid angle [sr]; part of the peak?
 #[pyfunction]
-#[expect(clippy::type_complexity, reason = "a tuple of arrays")]
 pub fn exit_cells<'py>(
     py: Python<'py>,
     bsdf: &PyBsdf,

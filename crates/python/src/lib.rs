@@ -20,7 +20,9 @@ mod _core {
     #[pymodule_export]
     use super::bsdf::PyBsdf;
     #[pymodule_export]
-    use super::bsdf_report::{bsdf_report, exit_cells, incident_cells, probe_directions, save_split};
+    use super::bsdf_report::{
+        bsdf_report, exit_cells, incident_cells, probe_directions, save_split, through_interval,
+    };
     #[pymodule_export]
     use super::error::InputError;
     #[pymodule_export]

@@ -5,19 +5,19 @@ from typing import Annotated, Any
 
 import numpy as np
 import typer
-from rich import box
-from rich.console import Console
-from rich.table import Table
 
-from sunpeak.cli.output import emit_json
+from sunpeak.bsdf_plot import Kind, is_picture, plot_bsdf
+from sunpeak.cli.bsdf_show import show
+from sunpeak.cli.options import Quiet
+from sunpeak.cli.output import emit_json, note
 from sunpeak.cli.values import parse_numbers
 from sunpeak.fabrics import Fabric
-from sunpeak.inspection import Inspection, inspect
-from sunpeak.scattering import Bsdf, Peak, direction
+from sunpeak.inspection import inspect
+from sunpeak.scattering import Bsdf, Peak, side_of_ray
 
 app = typer.Typer(no_args_is_help=True, help="Look into a BSDF file.")
 
-File = Annotated[Path, typer.Argument(help="LBNL XML file.")]
+File = Annotated[Path, typer.Argument(help="LBNL XML file, or the folder of a split.")]
 Json = Annotated[bool, typer.Option("--json", help="One JSON value on standard output.")]
 
 
@@ -41,7 +41,9 @@ def through(
         Any,
         typer.Option(parser=parse_numbers, metavar="DEG,…", help="From the front normal; above 90 from behind."),
     ] = "0",
-    phi: Annotated[Any, typer.Option(parser=parse_numbers, metavar="DEG,…", help="Azimuth of the ray from x.")] = "0",
+    phi: Annotated[
+        Any, typer.Option(parser=parse_numbers, metavar="DEG,…", help="Azimuth, from x, towards which the ray runs.")
+    ] = "0",
     peak: Annotated[Peak, typer.Option(help="Rule that finds the peak.")] = "split",
     as_json: Json = False,
 ) -> None:
@@ -51,7 +53,7 @@ def through(
     """
     bsdf = Bsdf.load(file)
     angles = np.array([(t, p) for p in phi for t in theta])
-    values = bsdf.through(direction(angles[:, 0], angles[:, 1]), peak)
+    values = bsdf.through(side_of_ray(angles[:, 0], angles[:, 1]), peak)
     if as_json:
         rows = [{"theta_deg": t, "phi_deg": p, "through": float(v)} for (t, p), v in zip(angles, values, strict=True)]
         emit_json({"file": str(file), "peak": peak, "through": rows})
@@ -81,51 +83,42 @@ def fabric(
     Fabric(openness, cut_off, exponent, scattered, lobe_share, lobe_sigma, reflectance).write(output, basis)
 
 
-def show(report: Inspection) -> None:
-    """Print the report for people."""
-    console = Console(highlight=False)
-    about = report.description
-    console.print(f"[bold]{about['name'] or report.file}[/bold] {about['manufacturer']}".rstrip())
-    console.print(f"{report.file}: {about['structure']}")
-    for warning in about["warnings"]:
-        console.print(f"[yellow]warning:[/yellow] {warning}")
-    console.print(components(report))
-    console.print(angles(report))
-    for side, verdict in report.verdicts.items():
-        console.print(f"[bold]{side}:[/bold] {verdict}.", soft_wrap=True)
+@app.command("split")
+def split(
+    file: File,
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="FOLDER", help="Where the files go.")],
+    quiet: Quiet = False,
+) -> None:
+    """Write the split as files: the residual as LBNL XML, the peak as JSON and CSV, and where the flux went.
+
+    Commands that read a BSDF read the folder, too; a scene names the peak.json in it.
+
+    [dim]$[/dim] [cyan]sunpeak bsdf split shade.xml -o shade_split[/cyan]
+    """
+    for written in Bsdf.load(file).save_split(output):
+        note(str(written), quiet)
 
 
-def components(report: Inspection) -> Table:
-    """Table of the file's parts."""
-    table = Table(title="Tables, by the side that rays meet", title_justify="left", box=box.SIMPLE_HEAD)
-    for heading in ("side", "mode", "basis", "columns", "smallest cell", "channels"):
-        table.add_column(heading)
-    for part in report.description["components"]:
-        reversed_table = part["by_reciprocity"] and part["mode"] == "transmission"
-        table.add_row(
-            part["side"],
-            part["mode"] + (" (by reciprocity)" if reversed_table else ""),
-            part["basis"] + (" (isotropic)" if part["isotropic"] else ""),
-            str(part["incident_cells"]),
-            f"{part['smallest_cell_sr']:.3g} sr",
-            "3" if part["colour"] else "1",
-        )
-    return table
+@app.command("plot")
+def plot(
+    file: File,
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="Picture: .png, .svg, or a name without suffix for both.")
+    ],
+    theta: Annotated[
+        float, typer.Option(min=0, max=180, help="Degrees from the front normal; above 90 from behind.")
+    ] = 0.0,
+    phi: Annotated[float, typer.Option(help="Azimuth of the ray from x, degrees.")] = 0.0,
+    kind: Annotated[Kind, typer.Option(help="What to draw.")] = "all",
+    quiet: Quiet = False,
+) -> None:
+    """Draw the exit hemisphere, the map of T over all incidences, and a profile through the peak.
 
-
-def angles(report: Inspection) -> Table:
-    """Table of hemispherical values and through transmittance by angle."""
-    table = Table(title="By angle of incidence, in the plane of x", title_justify="left", box=box.SIMPLE_HEAD)
-    table.add_column("side")
-    for heading in ("theta, deg", "passes", "reflected", "T split", "T radiance", "T paper"):
-        table.add_column(heading, justify="right")
-    for look in report.looks:
-        numbers = (
-            look.transmittance,
-            look.reflectance,
-            look.through_split,
-            look.through_radiance,
-            look.through_paper,
-        )
-        table.add_row(look.side, f"{look.theta_deg:g}", *(f"{number:.4f}" for number in numbers))
-    return table
+    [dim]$[/dim] [cyan]sunpeak bsdf plot shade.xml -o shade.png --theta 40 --phi 90[/cyan]
+    """
+    if not is_picture(output):
+        raise typer.BadParameter(f"{output}: expected a name that ends in .png or .svg, or without a suffix")
+    bsdf = Bsdf.load(file)
+    label = bsdf.describe()["name"] or file.stem
+    for written in plot_bsdf(bsdf, output, theta_deg=theta, phi_deg=phi, kind=kind, label=label):
+        note(str(written), quiet)

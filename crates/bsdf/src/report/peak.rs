@@ -126,6 +126,11 @@ impl Bsdf {
         })
     }
 
+    /// Lowest and highest luminous through transmittance [-] that the data allow at `w_in`, by the split.
+    pub fn through_interval(&self, w_in: Vec3) -> [f64; 2] {
+        self.distribution(w_in, Mode::Transmission).map_or([0.0; 2], |o| interval(o, w_in))
+    }
+
     fn through_grid(&self, oriented: &Oriented, front: bool) -> Vec<ThroughReport> {
         let isotropic = oriented.distribution.luminous().is_isotropic();
         let azimuths = if isotropic { 1 } else { THROUGH_AZIMUTHS };
