@@ -9,7 +9,7 @@ from sunpeak.comfort import GlareReport, GlareSource, Task, glare
 from sunpeak.fabrics import Fabric
 from sunpeak.pictures import ExactSource, Picture
 from sunpeak.rendering import World, render, trace
-from sunpeak.scattering import Bsdf, Evidence, Samples, direction
+from sunpeak.scattering import Bsdf, Evidence, Samples, direction, side_of_ray
 from sunpeak.scenes import Rays, Scene, View
 from sunpeak.skies import Place, Sky, SunPosition, sun_position
 
@@ -35,6 +35,7 @@ __all__ = [
     "direction",
     "glare",
     "render",
+    "side_of_ray",
     "sun_position",
     "trace",
 ]

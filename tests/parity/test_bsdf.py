@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import sunpeak as sp
-from conftest import Radiance, luminance
+from conftest import CommandLine, Radiance, luminance
 
 # Radiance's library moves values by up to 3e-4, so that neighbouring cells differ.
 PERTURBATION = 4e-4
@@ -113,3 +113,24 @@ def test_unsound_files_are_refused_with_their_place(name: str, shared: Path) -> 
     path = shared / "bsdf" / f"{name}.xml"
     with pytest.raises(sp.InputError, match=rf"{name}\.xml:\d+:\d+: .*expected"):
         sp.Bsdf.load(path)
+
+
+def test_the_command_line_means_the_azimuth_towards_which_the_ray_runs(
+    shared: Path, radiance: Radiance, sunpeak: CommandLine, tmp_path: Path
+) -> None:
+    """An asymmetric blind: rays towards azimuth 90 and 270 do not see the same T."""
+    path = shared / "bsdf" / "blinds_klems-full_leading-text.xml"
+    theta, phi = np.radians(40.0), np.radians([90.0, 270.0])
+    rays = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.full(2, -np.cos(theta))], axis=1)
+    sources = "".join(f"g source s{i} 0 0 4 {x:.9f} {y:.9f} {z:.9f} 0.2\n" for i, (x, y, z) in enumerate(rays))
+    scene = (
+        f"void aBSDF m 5 {path} 0 1 0 . 0 0\n"
+        "m polygon p 0 0 12 -100 -100 0 100 -100 0 100 100 0 -100 100 0\n"
+        "void glow g 0 0 4 1 1 1 -1\n" + sources
+    )
+    octree = radiance.octree(tmp_path / "blind.oct", text=scene)
+    theirs = luminance(radiance.rtrace(octree, np.hstack([-rays, rays]), "-ab", "0", "-st", "1", "-ss", "0")) / 179.0
+    text = sunpeak("bsdf", "through", path, "--theta", "40", "--phi", "90,270", "--peak", "radiance", "--json").out
+    ours = [row["through"] for row in json.loads(text)["through"]]
+    assert theirs.max() > 10 * theirs.min()
+    np.testing.assert_allclose(ours, theirs, rtol=PERTURBATION, atol=1e-5)
