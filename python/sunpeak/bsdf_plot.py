@@ -89,9 +89,9 @@ def plot_bsdf(
     kind: Kind = "all",
     label: str | None = None,
 ) -> list[Path]:
-    """Draw a BSDF for the incidence `theta_deg` (from the front normal, above 90 from behind), `phi_deg` (towards which the ray runs).
+    """Draw a BSDF for the incidence `theta_deg` (from the front normal, above 90 from behind), `phi_deg`.
 
-    `output` ends in `.png` or `.svg`, or has no suffix: then both are written. Gives the files' names.
+    `phi_deg` is the azimuth towards which the ray runs. `output` ends in `.png` or `.svg`, or has no suffix: then both are written. Gives the files' names.
     """
     targets = outputs(output)
     if kind not in get_args(Kind):
