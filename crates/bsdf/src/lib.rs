@@ -14,6 +14,7 @@
 
 pub mod basis;
 mod bsdf;
+mod cache;
 mod distribution;
 mod incident;
 mod load;
@@ -30,6 +31,7 @@ pub mod xml;
 mod xml_write;
 
 pub use bsdf::{Bsdf, Mode, Sample, Sides};
+pub use cache::Cache;
 pub use distribution::Distribution;
 pub use incident::Incident;
 pub use peak::{ColumnPeak, PeakRule, Split};

@@ -2,6 +2,7 @@
 
 use crate::{
     bsdf::{Bsdf, Sides},
+    cache::{Cache, Contents, Slot},
     distribution::Distribution,
     table::Table,
     xml::{self, Block, Document},
@@ -13,33 +14,50 @@ use sunpeak_core::{Error, Location, Result};
 const BUFFER: usize = 1 << 18;
 
 impl Bsdf {
-    /// Read an LBNL XML file and split it, or read a split that [`Self::save_split`] wrote (its folder or its JSON file).
+    /// Read an LBNL XML file and split it, or read a split that [`Self::save_split`] wrote (its folder or its JSON file). Large files
+    /// come from the user's [`Cache`] the second time.
     pub fn load(path: &Path) -> Result<Self> {
+        Self::load_with(path, Cache::of_user().as_ref())
+    }
+
+    /// As [`Self::load`], with a cache of one's own or none.
+    pub fn load_with(path: &Path, cache: Option<&Cache>) -> Result<Self> {
         if Self::is_split(path) {
             return Self::load_split(path);
         }
-        let file = File::open(path).map_err(|e| Error::io(path, e))?;
-        let name = path.to_string_lossy();
-        Self::from_document(&name, xml::read(&name, BufReader::with_capacity(BUFFER, file))?)
+        let slot = cache.and_then(|cache| cache.slot(path));
+        let contents = match slot.as_ref().and_then(Slot::get) {
+            Some(contents) => contents,
+            None => {
+                let file = File::open(path).map_err(|e| Error::io(path, e))?;
+                let name = path.to_string_lossy();
+                let document = xml::read(&name, BufReader::with_capacity(BUFFER, file))?;
+                let contents = split(&name, document)?;
+                slot.iter().for_each(|slot| slot.put(&contents));
+                contents
+            }
+        };
+        Ok(Self::from_sides(contents.document, contents.sides))
     }
 
     /// Read the text of an LBNL XML file and split it; `file` names it in messages.
     pub fn parse(file: &str, text: &[u8]) -> Result<Self> {
-        Self::from_document(file, xml::parse(file, text)?)
+        let contents = split(file, xml::parse(file, text)?)?;
+        Ok(Self::from_sides(contents.document, contents.sides))
     }
+}
 
-    fn from_document(file: &str, mut document: Document) -> Result<Self> {
-        let blocks = std::mem::take(&mut document.blocks);
-        let sides = sides_of(file, blocks, &|direction, table, color| {
-            let transmission = direction.starts_with("Transmission");
-            Ok(if transmission {
-                Distribution::with_split(table, color)
-            } else {
-                Distribution::new(table, color)
-            })
-        })?;
-        Ok(Self::from_sides(document, sides))
-    }
+fn split(file: &str, mut document: Document) -> Result<Contents> {
+    let blocks = std::mem::take(&mut document.blocks);
+    let sides = sides_of(file, blocks, &|direction, table, color| {
+        let transmission = direction.starts_with("Transmission");
+        Ok(if transmission {
+            Distribution::with_split(table, color)
+        } else {
+            Distribution::new(table, color)
+        })
+    })?;
+    Ok(Contents { document, sides })
 }
 
 /// Makes a distribution of a direction's luminous table and its CIE X and Z.

@@ -5,6 +5,7 @@
 //! and the exiting point turned so that the unscattered direction lies on the positive first axis.
 
 mod build;
+mod pack;
 
 pub use build::TreeBuilder;
 

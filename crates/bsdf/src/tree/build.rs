@@ -7,7 +7,7 @@ use super::{Node, Tree};
 
 /// Deepest division, by rank less 3: 2^12 cells a side resolve 0.014 degrees, 2^8 0.2 degrees; no file is known past 2^7. A column
 /// of the finest incident division is analysed each, so that a single deep branch costs 2^11 or 2^16 of them.
-const MAX_LOG2: [u8; 2] = [12, 8];
+pub(super) const MAX_LOG2: [u8; 2] = [12, 8];
 
 /// Most nodes: 16 regular cells each would be four times as many values as one may read.
 const MAX_NODES: usize = 1 << 26;
@@ -68,8 +68,14 @@ impl TreeBuilder {
         if self.open.len() > usize::from(self.max_log2()) {
             return Err(format!("the tensor tree is more than {} levels deep", self.max_log2()));
         }
-        if self.open.last().is_some_and(|o| self.holds_values(o)) {
-            return Err("found '{' among values; expected a value or '}'".into());
+        if let Some(parent) = self.open.last() {
+            let all = 1usize << self.tree.rank;
+            if self.holds_values(parent) {
+                return Err("found '{' among values; expected a value or '}'".into());
+            }
+            if self.pieces.len() - parent.first_piece == all {
+                return Err(format!("a branch of the tensor tree has more than {all} children"));
+            }
         }
         self.open.push(Open { first_piece: self.pieces.len(), first_value: self.tree.values.len() });
         Ok(())
@@ -361,6 +367,7 @@ mod tests {
             ("{11}", "2 values; expected a power of 8"),
             ("{{1}{1}}", "2 children; expected 8"),
             ("{{1}1}", "1 children; expected 8"),
+            ("{{1}{1}{1}{1}{1}{1}{1}{1}{", "more than 8 children"),
             ("{1{", "'{' among values"),
             ("{1}1", "follows the end"),
             ("{1}{", "follows the end"),
