@@ -52,14 +52,17 @@ impl Table {
         let w_in = frame.to_local(-arrival.direction);
         let goes_straight = self.rule == PeakRule::Split || (self.is_reference_rule() && view);
         let straight = if goes_straight { self.bsdf.through(w_in, self.rule) } else { Rgb::ZERO };
-        let hemispherical = |mode| self.bsdf.hemispherical_smooth(w_in, mode, self.rule);
+        let hemispherical = |mode| luminance(self.bsdf.hemispherical_smooth(w_in, mode, self.rule));
         let lobes = TableLobes {
             table: self,
             frame,
             w_in,
             view,
             diffuse_reflection: if arrival.at_front() { self.front_diffuse } else { self.back_diffuse },
-            table_weight: luminance(hemispherical(Mode::Reflection) + hemispherical(Mode::Transmission)),
+            sides: Sides {
+                reflected: hemispherical(Mode::Reflection),
+                transmitted: hemispherical(Mode::Transmission),
+            },
         };
         let smooth = if lobes.albedo() > 0.0 { Smooth::Table(lobes) } else { Smooth::None };
         Scattering { straight, mirrored: Rgb::ZERO, refracted: None, smooth }
@@ -74,14 +77,58 @@ pub(crate) struct TableLobes<'w> {
     w_in: Vec3,
     view: bool,
     diffuse_reflection: Rgb,
-    /// Luminous share that the table scatters.
-    table_weight: f64,
+    sides: Sides,
+}
+
+/// Luminous shares that the table scatters.
+#[derive(Clone, Copy, Debug)]
+struct Sides {
+    reflected: f64,
+    transmitted: f64,
+}
+
+/// At least this share of a table's samples is transmitted, if it transmits anything: a shade reflects much more than it lets
+/// through, but the light is on its other side.
+const LEAST_TRANSMITTED: f64 = 0.4;
+
+/// Transmittance below this is none.
+const NO_TRANSMISSION: f64 = 1e-5;
+
+impl Sides {
+    fn sum(&self) -> f64 {
+        self.reflected + self.transmitted
+    }
+
+    /// Chance that a sample is a reflection in proportion to the flux, and as we draw it.
+    fn reflected_chances(&self) -> (f64, f64) {
+        let by_flux = self.reflected / self.sum();
+        if self.transmitted < NO_TRANSMISSION {
+            return (by_flux, by_flux);
+        }
+        (by_flux, by_flux.min(1.0 - LEAST_TRANSMITTED))
+    }
+
+    /// The first of the numbers that [`Bsdf::sample_smooth`] takes: below the chance by flux it draws a reflection.
+    fn first_number(&self, u: f64) -> f64 {
+        let (by_flux, ours) = self.reflected_chances();
+        if u < ours { u / ours * by_flux } else { by_flux + (u - ours) / (1.0 - ours) * (1.0 - by_flux) }
+    }
+
+    /// Our density over that in proportion to the flux.
+    fn boost(&self, is_reflection: bool) -> f64 {
+        let (by_flux, ours) = self.reflected_chances();
+        match (is_reflection, ours == by_flux) {
+            (_, true) => 1.0,
+            (true, false) => ours / by_flux,
+            (false, false) => (1.0 - ours) / (1.0 - by_flux),
+        }
+    }
 }
 
 impl TableLobes<'_> {
     /// Luminous weights: diffuse reflection, diffuse transmission, table.
     fn weights(&self) -> [f64; 3] {
-        [luminance(self.diffuse_reflection), luminance(self.table.diffuse_transmission), self.table_weight]
+        [luminance(self.diffuse_reflection), luminance(self.table.diffuse_transmission), self.sides.sum()]
     }
 
     pub fn albedo(&self) -> f64 {
@@ -127,13 +174,13 @@ impl TableLobes<'_> {
     pub fn pdf(&self, direction: Vec3) -> f64 {
         let w_out = self.frame.to_local(direction);
         let [reflect, transmit, table] = self.weights();
-        let diffuse = if w_out.z * self.w_in.z > 0.0 { reflect } else { transmit };
-        let table_pdf = if table > 0.0 {
-            table * self.table.bsdf.pdf_smooth(self.w_in, w_out, self.table.rule)
-        } else {
-            0.0
-        };
-        (diffuse * w_out.z.abs() * FRAC_1_PI + table_pdf) / self.albedo()
+        let is_reflection = w_out.z * self.w_in.z > 0.0;
+        let diffuse = if is_reflection { reflect } else { transmit } * w_out.z.abs() * FRAC_1_PI;
+        if table <= 0.0 {
+            return diffuse / self.albedo();
+        }
+        let by_flux = self.table.bsdf.pdf_smooth(self.w_in, w_out, self.table.rule);
+        (diffuse + table * by_flux * self.sides.boost(is_reflection)) / self.albedo()
     }
 
     pub fn sample(&self, choice: f64, u: [f64; 2], v: f64) -> Option<SmoothSample> {
@@ -146,7 +193,7 @@ impl TableLobes<'_> {
         } else if choice < reflect + transmit {
             towards(-side)
         } else {
-            self.sample_table([u[0], u[1], v])?
+            self.sample_table([v, u[0], u[1]])?
         };
         let direction = self.frame.to_world(w_out);
         let pdf = self.pdf(direction);
@@ -156,6 +203,10 @@ impl TableLobes<'_> {
     }
 
     fn sample_table(&self, u: [f64; 3]) -> Option<Vec3> {
+        let u = [self.sides.first_number(u[0]), u[1], u[2]];
         self.table.bsdf.sample_smooth(self.w_in, u, self.table.rule).map(|sample| sample.w_out)
     }
 }
+
+#[cfg(test)]
+mod tests;
