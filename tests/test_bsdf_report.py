@@ -74,7 +74,8 @@ def test_splits_of_fabrics_read_back_the_same(basis: str, tmp_path: Path) -> Non
 
 
 def test_the_csv_files_say_what_the_json_file_says(tmp_path: Path) -> None:
-    fabric(tmp_path, "klems-quarter").save_split(tmp_path / "split")
+    bsdf = fabric(tmp_path, "klems-quarter")
+    bsdf.save_split(tmp_path / "split")
     about = json.loads((tmp_path / "split" / "peak.json").read_text())
     with (tmp_path / "split" / "peak.csv").open() as file:
         rows = list(csv.DictReader(file))
@@ -86,11 +87,13 @@ def test_the_csv_files_say_what_the_json_file_says(tmp_path: Path) -> None:
         assert float(row["through"]) == column["through"]
         assert [float(row["theta_min_deg"]), float(row["theta_max_deg"])] == column["theta_bounds_deg"]
         assert float(entry["table"]) == pytest.approx(float(entry["residual"]) + float(entry["through"]), rel=2e-6)
-    # Patch 1 of Klems quarter: 9 to 27 degrees, 8 azimuths; at the front w_in is opposite the table's point.
+    # Patch 1 of Klems quarter: 9 to 27 degrees, 8 azimuths.
     front = next(side for side in about["sides"] if side["met_by_rays_at"] == "front")
     patch = front["columns"][1]
-    assert (patch["theta_deg"], patch["phi_deg"]) == (pytest.approx(18), pytest.approx(180))
-    np.testing.assert_allclose(patch["phi_bounds_deg"], [157.5, 202.5])
+    assert (patch["theta_deg"], patch["phi_deg"]) == (pytest.approx(18), pytest.approx(0))
+    np.testing.assert_allclose(patch["phi_bounds_deg"], [-22.5, 22.5])
+    w_in = sp.side_of_ray(*[[column[key] for column in front["columns"]] for key in ("theta_deg", "phi_deg")])
+    np.testing.assert_allclose(bsdf.evidence(w_in).through, [column["through"] for column in front["columns"]])
 
 
 def test_a_changed_residual_is_refused(tmp_path: Path) -> None:

@@ -24,6 +24,7 @@ from sunpeak.bsdf_draw import (
     legend_below,
     limit_to,
     log_limits,
+    positions,
 )
 from sunpeak.files import check_target, whole_file
 from sunpeak.scattering import Bsdf, Floats, rows, side_of_ray
@@ -48,10 +49,13 @@ CLOSE_UP = 1.7
 PROFILE_POINTS = 7201
 """Points of the profile: 1/40 degree each."""
 
+ON_NORMAL = 1e-9
+"""Sine of theta below which a direction has no azimuth of its own."""
+
 
 @dataclass(frozen=True)
 class Incidence:
-    """One BSDF looked at from one direction."""
+    """One BSDF and one ray that meets it."""
 
     bsdf: Bsdf
     theta_deg: float
@@ -89,9 +93,9 @@ def plot_bsdf(
     kind: Kind = "all",
     label: str | None = None,
 ) -> list[Path]:
-    """Draw a BSDF for the incidence `theta_deg` (from the front normal, above 90 from behind), `phi_deg`.
+    """Draw a BSDF for a ray that comes down at `theta_deg` (above 90 from behind) and runs towards azimuth `phi_deg`.
 
-    `phi_deg` is the azimuth towards which the ray runs. `output` ends in `.png` or `.svg`, or has no suffix: then both are written. Gives the files' names.
+    `output` ends in `.png` or `.svg`, or has no suffix: then both are written. Gives the files' names.
     """
     targets = outputs(output)
     if kind not in get_args(Kind):
@@ -241,15 +245,15 @@ def draw_through(figure: "Figure", axes: "Axes", incidence: Incidence) -> None:
     largest = float(through.max())
     drawn = draw_cells(axes, disc(outlines), through, (0.0, largest or 1.0), scale="linear", borders=len(through) > 1)
     draw_hemisphere(axes)
-    here = disc(incidence.w_in[:, :2])[0]
+    here = disc(-incidence.w_in[:, :2])[0]
     axes.plot(*here, "x", markersize=11, markeredgewidth=4.0, color=GAP, zorder=6)
     axes.plot(*here, "x", markersize=10, markeredgewidth=2.0, color=MARK, label=f"incidence {incidence.name}", zorder=7)
     side = "front" if incidence.front else "back"
     if largest > 0.0:
-        axes.set_title(f"T by incidence, rays at the {side}", fontsize=10.5)
+        axes.set_title(f"T by the direction of the ray, at the {side}", fontsize=10.5)
         figure.colorbar(drawn, ax=axes, label="through transmittance T [%]", fraction=0.046, pad=0.02)
     else:
-        axes.set_title(f"No peak at any incidence, rays at the {side}", fontsize=10.5)
+        axes.set_title(f"No peak for any ray at the {side}", fontsize=10.5)
     legend_below(axes, 0.0)
 
 
@@ -274,14 +278,14 @@ def draw_profile(axes: "Axes", incidence: Incidence) -> None:
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
     axes.set_title(f"Profile through the straight direction, {incidence.name}", fontsize=10.5)
-    legend_below(axes)
+    legend_below(axes, 0.13)
 
 
 def profile_directions(incidence: Incidence) -> tuple[Floats, Floats, float]:
     """Exit angles [deg] in the plane of incidence, their directions, and the angle of the straight one."""
     straight = -incidence.w_in[0]
     sine = float(np.hypot(*straight[:2]))
-    along = straight[:2] / sine if sine > 0.0 else np.array([1.0, 0.0])
+    along = straight[:2] / sine if sine > ON_NORMAL else positions(incidence.phi_deg)
     # Off the rim, and off the borders that lie at whole degrees.
     angle = np.linspace(-89.99, 89.99, PROFILE_POINTS)
     across = np.sin(np.radians(angle))[:, None] * along

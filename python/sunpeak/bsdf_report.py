@@ -1,7 +1,8 @@
 """The report on a BSDF: what it resolves, whether it is sound, and what peak extraction makes of it.
 
 Sides are those that rays meet, `front` or `back`; theta counts from that side's normal unless it is said that it
-counts from the front normal (above 90 from behind), phi from x. Numbers come from the compiled core, words from here.
+counts from the front normal (above 90 from behind); phi, from x, is the azimuth towards which the ray runs, as in
+`sunpeak.side_of_ray`. Numbers come from the compiled core, words from here.
 """
 
 import math
@@ -91,7 +92,7 @@ class SideReport:
     largest_sum: float
     """Largest transmittance plus reflectance [-]."""
     largest_sum_at_deg: tuple[float, float]
-    """Where: theta from the front normal, phi."""
+    """Where: theta from the front normal, phi of the ray."""
     share_above_one: float
     """Share of the incidences, by projected solid angle, where the sum is above 1."""
     exact: bool
@@ -114,7 +115,7 @@ class Reciprocity:
     largest_difference: float
     """Over the larger value, or over the mean value where that is more [-]."""
     largest_at_deg: tuple[float, float, float, float]
-    """Where: theta (from the front normal) and phi of `w_in`, of `w_out`."""
+    """Where: theta (from the front normal) and azimuth of `w_in`, of `w_out`, as in `sunpeak.direction`."""
     by_construction: bool
     """One table serves both directions."""
 

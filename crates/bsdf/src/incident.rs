@@ -13,7 +13,8 @@ use sunpeak_core::Vec3;
 /// Points an edge of a column that bound it.
 const EDGE_POINTS: usize = 16;
 
-/// One column as rays meet it: `w_in` directions, theta from the front normal (above 90 from behind).
+/// One column as rays meet it: theta from the front normal (above 90 from behind), phi the azimuth from x towards which the ray
+/// runs, opposite to that of `w_in`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Incident {
     /// Number of the column in the table.
@@ -38,21 +39,21 @@ impl Incident {
         let columns = distribution.columns();
         // A table's incident point is minus the ray's; against the table it is the ray's own.
         let sign = if reversed { 1.0 } else { -1.0 };
-        let middle = sign * middle(columns, column);
+        let toward = -sign * middle(columns, column);
         let outline: Vec<DVec2> =
-            columns.outline(column, EDGE_POINTS).into_iter().map(|p| sign * p).collect();
+            columns.outline(column, EDGE_POINTS).into_iter().map(|p| -sign * p).collect();
         let isotropic = distribution.luminous().is_isotropic();
         let bounds = if isotropic {
             let radius = |u: f64| columns.point(column, [u, 0.5]).x.min(1.0).asin().to_degrees();
             AngularBounds { theta_deg: [radius(1.0), radius(0.0)], phi_deg: [-180.0, 180.0] }
         } else {
-            AngularBounds::of(&outline, middle)
+            AngularBounds::of(&outline, toward)
         };
         let full_turn = bounds.phi_deg[1] - bounds.phi_deg[0] >= 360.0;
-        let middle = if isotropic { DVec2::new(middle.length(), 0.0) } else { middle };
-        let theta = middle.length().min(1.0).asin().to_degrees();
+        let toward = if isotropic { DVec2::new(toward.length(), 0.0) } else { toward };
+        let theta = toward.length().min(1.0).asin().to_degrees();
         let [near, far] = bounds.theta_deg;
-        let phi = middle.to_angle().to_degrees();
+        let phi = toward.to_angle().to_degrees();
         let shift = if full_turn {
             180.0
         } else if phi < 0.0 {
@@ -62,10 +63,10 @@ impl Incident {
         };
         // The azimuths of the bounds were counted from their own start.
         let turns = if full_turn { 0.0 } else { ((bounds.phi_deg[0] - phi) / 360.0).round() * 360.0 };
-        let height = (1.0 - middle.length_squared()).max(0.0).sqrt();
+        let height = (1.0 - toward.length_squared()).max(0.0).sqrt();
         Self {
             column,
-            w_in: middle.extend(if front { height } else { -height }),
+            w_in: (-toward).extend(if front { height } else { -height }),
             theta_deg: if front { theta } else { 180.0 - theta },
             phi_deg: if full_turn { 0.0 } else { phi + shift },
             theta_bounds_deg: if front { [near, far] } else { [180.0 - far, 180.0 - near] },

@@ -28,7 +28,7 @@ pub struct ExitCell {
 /// An incident cell of transmission.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IncidentCell {
-    /// Border: (x, y) of `w_in`, once around; rings give their outer circle, those further in come later.
+    /// Border: (x, y) of the rays' directions, once around; rings give their outer circle, those further in come later.
     pub outline: Vec<DVec2>,
     /// Where it lies.
     pub incident: Incident,
@@ -67,7 +67,8 @@ impl Bsdf {
         let w_in = if front { Vec3::Z } else { -Vec3::Z };
         let Some(oriented) = self.distribution(w_in, Mode::Transmission) else { return Vec::new() };
         let d = &oriented.distribution;
-        let sign = if oriented.reversed { 1.0 } else { -1.0 };
+        // A table's incident point is the ray's own direction; against the table it is minus that.
+        let sign = if oriented.reversed { -1.0 } else { 1.0 };
         let all = Incident::all(oriented, front).into_iter().zip(d.split().columns());
         all.map(|(incident, peak)| {
             let outline = d.columns().outline(incident.column, edge_points);

@@ -1,6 +1,7 @@
 //! What a BSDF is and does: resolution, energy, reciprocity, and what peak extraction makes of it.
 //!
-//! Numbers only; the words are the caller's. Directions are `w_in`: the side of the traced ray, theta from the front normal.
+//! Numbers only; the words are the caller's. An incidence is a ray: it comes down at theta from a normal and runs towards the
+//! azimuth phi from x, so that `w_in` has the azimuth phi + 180 degrees.
 
 mod peak;
 mod reciprocity;
@@ -72,7 +73,7 @@ pub struct SideReport {
     pub angles: Vec<HemisphericalReport>,
     /// Largest transmittance plus reflectance [-].
     pub largest_sum: f64,
-    /// Where: theta, phi [deg].
+    /// Where: theta from the front normal, phi [deg].
     pub largest_sum_at_deg: [f64; 2],
     /// Share of the incidences (by projected solid angle) where the sum is above 1.
     pub share_above_one: f64,
@@ -112,16 +113,23 @@ impl Range {
     }
 }
 
-/// Direction on a side: theta from its normal, phi from x [deg].
+/// `w_in` of the ray that comes down on a side at theta from its normal and runs towards phi [deg].
 fn on_side(front: bool, theta_deg: f64, phi_deg: f64) -> Vec3 {
     let ((st, ct), (sp, cp)) = (theta_deg.to_radians().sin_cos(), phi_deg.to_radians().sin_cos());
-    Vec3::new(st * cp, st * sp, if front { ct } else { -ct })
+    Vec3::new(-st * cp, -st * sp, if front { ct } else { -ct })
 }
 
-/// Theta from the front normal and phi from 0 to 360 [deg].
+/// Theta from the front normal and azimuth from x, 0 to 360 [deg], of a direction.
 fn angles(w: Vec3) -> [f64; 2] {
     let theta = w.z.clamp(-1.0, 1.0).acos().to_degrees();
-    [theta, w.truncate().to_angle().to_degrees().rem_euclid(360.0)]
+    let azimuth = w.truncate().to_angle().to_degrees().rem_euclid(360.0);
+    [theta, if w.truncate().length() > 0.0 { azimuth } else { 0.0 }]
+}
+
+/// Theta and phi [deg] of an incidence.
+fn incidence(w_in: Vec3) -> [f64; 2] {
+    let [theta, azimuth] = angles(w_in);
+    [theta, (azimuth + 180.0).rem_euclid(360.0)]
 }
 
 fn azimuths() -> impl Iterator<Item = f64> {
@@ -190,7 +198,7 @@ impl Bsdf {
             front,
             angles: angles_of.to_vec(),
             largest_sum: largest,
-            largest_sum_at_deg: angles(place),
+            largest_sum_at_deg: incidence(place),
             share_above_one: if all > 0.0 { above / all } else { 0.0 },
             exact: self
                 .distribution(on_side(front, 0.0, 0.0), Mode::Transmission)

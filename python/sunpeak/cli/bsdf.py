@@ -108,7 +108,7 @@ def plot(
     theta: Annotated[
         float, typer.Option(min=0, max=180, help="Degrees from the front normal; above 90 from behind.")
     ] = 0.0,
-    phi: Annotated[float, typer.Option(help="Azimuth of the ray from x, degrees.")] = 0.0,
+    phi: Annotated[float, typer.Option(help="Azimuth, from x, towards which the ray runs, degrees.")] = 0.0,
     kind: Annotated[Kind, typer.Option(help="What to draw.")] = "all",
     quiet: Quiet = False,
 ) -> None:

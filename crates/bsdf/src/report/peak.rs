@@ -75,7 +75,7 @@ pub struct Contrast {
 pub struct ThroughReport {
     /// Angle from this side's normal [deg].
     pub theta_deg: f64,
-    /// Azimuth of `w_in` [deg].
+    /// Azimuth towards which the ray runs [deg].
     pub phi_deg: f64,
     /// Luminous [-].
     pub through: f64,

@@ -35,7 +35,7 @@ pub struct Reciprocity {
     pub mean_difference: f64,
     /// Largest difference [-] over the larger value, or over the mean of the larger values where that is more.
     pub largest_difference: f64,
-    /// Where: theta, phi of `w_in`, then of `w_out` [deg].
+    /// Where: theta from the front normal and azimuth of `w_in`, then of `w_out` [deg].
     pub largest_at_deg: [f64; 4],
     /// One table serves both directions.
     pub by_construction: bool,

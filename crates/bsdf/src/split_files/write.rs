@@ -18,8 +18,8 @@ use sunpeak_core::{Error, Result, luminance};
 
 /// What the numbers of `peak.json` mean.
 const NOTES: [&str; 6] = [
-    "theta_deg and phi_deg: the side of the traced ray (w_in) at the middle of the column; theta from the front normal, above 90 \
-     from behind; phi from x (0 where the column has all azimuths)",
+    "theta_deg and phi_deg: the traced ray at the middle of the column; theta from the front normal, above 90 from behind; phi from x, \
+     the azimuth towards which the ray runs (0 where the column has all azimuths)",
     "through: mean through transmittance of the column [-]; 0 where no peak was accepted; through_rgb in Radiance's primaries",
     "interval: lowest and highest transmittance that the data allow [-]; where there is no peak, 0 and what could be hidden",
     "contrast: flux of the peak over the flux that the surround has in the same cells [-]; null: nothing is scattered there",
