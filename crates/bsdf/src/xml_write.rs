@@ -67,7 +67,7 @@ impl Bsdf {
         writeln!(
             out,
             "\t<DataDefinition>\n\t\t<IncidentDataStructure>{}</IncidentDataStructure>",
-            self.structure
+            self.structure_of(components)
         )?;
         let mut bases: Vec<&AngleBasis> = Vec::new();
         for component in components {
@@ -87,6 +87,12 @@ impl Bsdf {
             write_component(out, component, leaves)?;
         }
         writeln!(out, "</Layer>\n</Optical>\n</WindowElement>")
+    }
+
+    /// Matrices are written by columns, whatever the file had that they came from.
+    fn structure_of(&self, components: &[Component]) -> &str {
+        let is_matrix = |c: &Component| matches!(c.luminous, Table::Matrix(_));
+        if components.iter().any(is_matrix) { "Columns" } else { &self.structure }
     }
 
     /// Distributions by the file's names: what the frame's back meets is the file's front.

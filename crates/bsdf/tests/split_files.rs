@@ -10,7 +10,11 @@ use std::{
     sync::Arc,
 };
 use sunpeak_bsdf::{
-    Bsdf, Distribution, Mode, PeakRule, Sides, synthetic::Fabric, table::Table, tree::TreeBuilder,
+    Bsdf, Distribution, Mode, PeakRule, Sides,
+    basis::AngleBasis,
+    synthetic::Fabric,
+    table::{Matrix, Table},
+    tree::TreeBuilder,
     xml::Document,
 };
 use sunpeak_core::{Rgb, Vec3, luminance};
@@ -132,6 +136,30 @@ fn the_ledger_balances() {
         assert!(files.ledger_csv.lines().count() <= columns + 1, "{name}");
         assert_eq!(files.peak_csv.lines().count(), files.ledger_csv.lines().count(), "{name}");
     }
+}
+
+#[test]
+fn files_by_rows_come_back() {
+    let xml = quarter().to_xml().replace(">Columns<", ">Rows<");
+    let by_rows = Bsdf::parse("rows.xml", xml.as_bytes()).unwrap();
+    let back = round_trip("rows", &by_rows);
+    assert_eq!((by_rows.structure.as_str(), back.structure.as_str()), ("Rows", "Columns"));
+    for w_in in directions(50, true) {
+        for w_out in directions(50, false) {
+            assert_eq!(by_rows.evaluate(w_in, w_out), back.evaluate(w_in, w_out));
+        }
+    }
+}
+
+#[test]
+fn a_product_that_only_reflects_has_a_split_too() {
+    let basis = Arc::new(AngleBasis::known("LBNL/Klems Quarter").unwrap());
+    let values = vec![0.1; basis.len() * basis.len()];
+    let table = Table::Matrix(Matrix { incident: basis.clone(), exiting: basis, values });
+    let sides =
+        Sides { reflection_front: Some(Arc::new(Distribution::new(table, None))), ..Sides::default() };
+    let bsdf = Bsdf::from_sides(Document { structure: "Columns".into(), ..Document::default() }, sides);
+    check_same("mirror", &bsdf, &round_trip("mirror", &bsdf), 0.0);
 }
 
 /// A table with colour: a random tint on each cell.

@@ -17,12 +17,17 @@ use crate::{
 };
 use std::{
     collections::HashMap,
+    fs::File,
+    io::BufReader,
     path::{Path, PathBuf},
 };
 use sunpeak_core::{Error, Location, Result, Rgb};
 
 /// How far the parts of one cell of the table may come out apart, relative to it: rounding of three channels.
 const SAME_CELL: f64 = 1e-4;
+
+/// Largest peak file that is read [bytes]: the finest trees have 2^16 columns a side, at a kilobyte each an eighth of this.
+const LARGEST_PEAK_FILE: u64 = 1 << 30;
 
 impl Bsdf {
     /// Read a split that was written before: the folder, or the JSON file in it.
@@ -31,10 +36,9 @@ impl Bsdf {
         let reader = Reader { file: file.clone() };
         let peak = reader.peak_file()?;
         let residual = file.with_file_name(&peak.residual);
-        let text = std::fs::read(&residual).map_err(|e| Error::io(&residual, e))?;
-        reader.check_residual(&peak, &residual, &text)?;
+        reader.check_residual(&peak, &residual)?;
         let name = residual.to_string_lossy().into_owned();
-        let mut document = xml::parse(&name, &text)?;
+        let mut document = xml::read(&name, buffered(&residual)?)?;
         let blocks = std::mem::take(&mut document.blocks);
         for side in &peak.sides {
             if !blocks.iter().any(|b| b.direction.eq_ignore_ascii_case(&side.direction)) {
@@ -56,6 +60,10 @@ impl Bsdf {
     }
 }
 
+fn buffered(path: &Path) -> Result<BufReader<File>> {
+    File::open(path).map(BufReader::new).map_err(|e| Error::io(path, e))
+}
+
 struct Reader {
     file: PathBuf,
 }
@@ -69,6 +77,10 @@ impl Reader {
     }
 
     fn peak_file(&self) -> Result<PeakFile> {
+        let size = std::fs::metadata(&self.file).map_err(|e| Error::io(&self.file, e))?.len();
+        if size > LARGEST_PEAK_FILE {
+            return Err(self.error(format!("{size} bytes; a peak file has at most {LARGEST_PEAK_FILE}")));
+        }
         let text = std::fs::read(&self.file).map_err(|e| Error::io(&self.file, e))?;
         let peak: PeakFile = serde_json::from_slice(&text).map_err(|e| {
             let place = Location::new(&*self.file.to_string_lossy(), e.line(), e.column());
@@ -90,15 +102,17 @@ impl Reader {
         Ok(peak)
     }
 
-    fn check_residual(&self, peak: &PeakFile, residual: &Path, text: &[u8]) -> Result<()> {
-        match &peak.residual_fnv1a {
-            Some(expected) if *expected != checksum(text) => Err(self.error(format!(
-                "{} is not the residual that was written with it (its checksum differs); split the product again, or take \
-                 'residual_fnv1a' out if the residual was changed on purpose",
-                residual.display()
-            ))),
-            _ => Ok(()),
+    fn check_residual(&self, peak: &PeakFile, residual: &Path) -> Result<()> {
+        let Some(expected) = &peak.residual_fnv1a else { return Ok(()) };
+        let found = checksum(buffered(residual)?).map_err(|e| Error::io(residual, e))?;
+        if found == *expected {
+            return Ok(());
         }
+        Err(self.error(format!(
+            "{} is not the residual that was written with it (its checksum differs); split the product again, or take \
+             'residual_fnv1a' out if the residual was changed on purpose",
+            residual.display()
+        )))
     }
 
     /// The distribution that was split.

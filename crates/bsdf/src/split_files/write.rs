@@ -13,7 +13,7 @@ use crate::{
     xml_write::{Component, Leaves},
 };
 use rayon::prelude::*;
-use std::fmt::Write;
+use std::{fmt::Write, io::BufRead};
 use sunpeak_core::{Error, Result, luminance};
 
 /// What the numbers of `peak.json` mean.
@@ -55,7 +55,7 @@ impl Bsdf {
             manufacturer: self.manufacturer.clone(),
             notes: NOTES.map(String::from).to_vec(),
             residual: RESIDUAL_FILE.into(),
-            residual_fnv1a: Some(checksum(residual_xml.as_bytes())),
+            residual_fnv1a: checksum(residual_xml.as_bytes()).ok(),
             sides,
         };
         let peak_json = serde_json::to_string_pretty(&file)
@@ -64,12 +64,18 @@ impl Bsdf {
     }
 }
 
-/// FNV-1a with 64 bits (Fowler, Noll, Vo 1991): tells files apart, no protection against malice.
-pub fn checksum(text: &[u8]) -> String {
-    let hash = text
-        .iter()
-        .fold(0xcbf2_9ce4_8422_2325_u64, |h, &b| (h ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3));
-    format!("{hash:016x}")
+/// FNV-1a with 64 bits (Fowler, Noll, Vo 1991) of all that a reader gives: tells files apart, no protection against malice.
+pub fn checksum(mut reader: impl BufRead) -> std::io::Result<String> {
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    loop {
+        let chunk = reader.fill_buf()?;
+        if chunk.is_empty() {
+            return Ok(format!("{hash:016x}"));
+        }
+        hash = chunk.iter().fold(hash, |h, &b| (h ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3));
+        let read = chunk.len();
+        reader.consume(read);
+    }
 }
 
 /// Does light of this direction of the file meet rays at the frame's front?
