@@ -43,6 +43,8 @@ COMMANDS = [
     "bsdf",
     "bsdf info",
     "bsdf through",
+    "bsdf split",
+    "bsdf plot",
     "sky",
     "sky perez",
     "sky cie",

@@ -5,6 +5,9 @@ channels in Radiance's primaries [W sr⁻¹ m⁻²]; luminance [cd/m²] = 179 (0
 """
 
 from sunpeak._core import InputError, __version__
+from sunpeak.bsdf_plot import plot_bsdf
+from sunpeak.bsdf_report import BsdfReport
+from sunpeak.bsdf_verdict import Verdict
 from sunpeak.comfort import GlareReport, GlareSource, Task, glare
 from sunpeak.fabrics import Fabric
 from sunpeak.pictures import ExactSource, Picture
@@ -15,6 +18,7 @@ from sunpeak.skies import Place, Sky, SunPosition, sun_position
 
 __all__ = [
     "Bsdf",
+    "BsdfReport",
     "Evidence",
     "ExactSource",
     "Fabric",
@@ -29,11 +33,13 @@ __all__ = [
     "Sky",
     "SunPosition",
     "Task",
+    "Verdict",
     "View",
     "World",
     "__version__",
     "direction",
     "glare",
+    "plot_bsdf",
     "render",
     "side_of_ray",
     "sun_position",
