@@ -26,7 +26,7 @@ def command(
         Path, typer.Option("--output", "-o", metavar="FOLDER", help="Where pictures and report go.")
     ] = Path("demo"),
     size: Annotated[Any, typer.Option(parser=parse_size, metavar="WxH", help="Pixels of the fisheyes.")] = "400x400",
-    samples: Annotated[int, typer.Option(min=1, help="Paths for each pixel.")] = 16,
+    samples: Annotated[int, typer.Option(min=1, help="Paths for each pixel.")] = 32,
     threads: options.Threads = None,
     quiet: options.Quiet = False,
 ) -> None:

@@ -37,7 +37,7 @@ class Plan:
 
     folder: Path
     size: tuple[int, int] = (400, 400)
-    samples: int = 16
+    samples: int = 32
     threads: int | None = None
     bases: tuple[str, ...] = fabric.BASES
 
