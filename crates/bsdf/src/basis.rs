@@ -132,6 +132,32 @@ impl AngleBasis {
         (ring, patch - ring.first)
     }
 
+    /// The patches that share a border with a patch.
+    pub fn neighbours(&self, patch: usize) -> Vec<usize> {
+        let (own, step) = self.ring_of(patch);
+        let at = self.rings.iter().position(|r| r.first == own.first).unwrap_or(0);
+        let azimuths =
+            |ring: &Ring, step: usize| [-0.5, 0.5].map(|edge| (step as f64 + edge) / ring.phi_count as f64);
+        let [low, high] = azimuths(own, step);
+        let touches = |ring: &Ring, step: usize| {
+            let [a, b] = azimuths(ring, step);
+            // Azimuths as turns; edges that only touch share no border.
+            [-1.0, 0.0, 1.0].iter().any(|turn| a + turn < high - 1e-9 && b + turn > low + 1e-9)
+        };
+        let mut found = Vec::new();
+        if own.phi_count > 2 {
+            found.extend([own.phi_count - 1, 1].map(|d| own.first + (step + d) % own.phi_count));
+        } else if own.phi_count == 2 {
+            found.push(own.first + 1 - step);
+        }
+        for ring in &self.rings[at.saturating_sub(1)..(at + 2).min(self.rings.len())] {
+            if ring.first != own.first {
+                found.extend((0..ring.phi_count).filter(|&k| touches(ring, k)).map(|k| ring.first + k));
+            }
+        }
+        found
+    }
+
     /// Projected solid angle of a patch [sr].
     pub fn projected_solid_angle(&self, patch: usize) -> f64 {
         let (ring, _) = self.ring_of(patch);
@@ -185,6 +211,32 @@ mod tests {
             }
         }
         assert_eq!(basis.index(DVec2::new(1.0, 1e-9)), basis.index(DVec2::new(0.999, 0.0)));
+    }
+
+    #[test]
+    fn neighbours_are_mutual_and_touch() {
+        for name in ["LBNL/Klems Full", "LBNL/Klems Half", "LBNL/Klems Quarter"] {
+            let basis = AngleBasis::known(name).unwrap();
+            for patch in 0..basis.len() {
+                let around = basis.neighbours(patch);
+                assert!(
+                    around.iter().all(|&n| n != patch && basis.neighbours(n).contains(&patch)),
+                    "{name} {patch}"
+                );
+                // Every point just outside an edge's middle lies in a neighbour.
+                for u in [[-0.01, 0.5], [1.01, 0.5], [0.5, -0.01], [0.5, 1.01]] {
+                    let (ring, step) = basis.ring_of(patch);
+                    let sin2 = ring.sin2(u[0]);
+                    if ring.phi_count == 1 || !(0.0..1.0).contains(&sin2) {
+                        continue;
+                    }
+                    let phi = 2.0 * PI * (step as f64 + u[1] - 0.5) / ring.phi_count as f64;
+                    let beside = basis.index(DVec2::from_angle(phi) * sin2.sqrt());
+                    assert!(around.contains(&beside), "{name} {patch}: {beside}");
+                }
+            }
+            assert_eq!(basis.neighbours(0).len(), basis.rings()[1].phi_count);
+        }
     }
 
     #[test]

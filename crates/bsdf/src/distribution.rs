@@ -1,7 +1,7 @@
 //! One side and mode of a BSDF: a luminous table, colour beside it, and the peak that was split off.
 
 use crate::{
-    peak::Split,
+    peak::{Instrument, Split},
     table::{Columns, Table},
 };
 use glam::{DVec2, DVec3};
@@ -31,8 +31,13 @@ impl Distribution {
 
     /// With its through peak split off (transmission).
     pub fn with_split(luminous: Table, color: Option<[Vec<f32>; 2]>) -> Self {
+        Self::with_split_of(luminous, color, Instrument::None)
+    }
+
+    /// With its through peak split off, which an instrument has widened.
+    pub fn with_split_of(luminous: Table, color: Option<[Vec<f32>; 2]>, instrument: Instrument) -> Self {
         let mut distribution = Self::new(luminous, color);
-        distribution.split = Split::of(&distribution);
+        distribution.split = Split::of(&distribution, instrument);
         distribution
     }
 

@@ -272,6 +272,34 @@ impl Columns {
     }
 }
 
+impl Columns {
+    /// The columns that share a border with a column.
+    pub fn neighbours(&self, column: usize) -> Vec<usize> {
+        match self {
+            Self::Radial { side } => {
+                let last = side / 2 - 1;
+                [column.checked_sub(1), (column < last).then_some(column + 1)].into_iter().flatten().collect()
+            }
+            Self::Square { side } => {
+                let (i, j) = (column / side, column % side);
+                let steps = [(i.wrapping_sub(1), j), (i + 1, j), (i, j.wrapping_sub(1)), (i, j + 1)];
+                let inside = steps.into_iter().filter(|&(i, j)| i < *side && j < *side);
+                inside.map(|(i, j)| i * side + j).collect()
+            }
+            Self::Patches(basis) => basis.neighbours(column),
+        }
+    }
+
+    /// Does a column reach grazing incidence?
+    pub fn is_grazing(&self, column: usize) -> bool {
+        match self {
+            Self::Radial { .. } => column == 0,
+            Self::Square { side } => [column / side, column % side].iter().any(|&k| k == 0 || k + 1 == *side),
+            Self::Patches(basis) => basis.rings().last().is_some_and(|last| column >= last.first()),
+        }
+    }
+}
+
 fn isotropic_coordinate(p_in: DVec2) -> f64 {
     (0.5 - ISOTROPIC_MARGIN - 0.5 * p_in.length()).max(0.0)
 }

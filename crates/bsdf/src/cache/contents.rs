@@ -118,7 +118,7 @@ fn read_distribution(from: &mut Decoder<impl Read>) -> io::Result<Distribution> 
         return Err(damaged());
     }
     Ok(Distribution::with_known_split(luminous, color, |columns| {
-        if parts.is_empty() { Split::none() } else { Split::from_parts(columns, parts) }
+        if parts.is_empty() { Split::none() } else { Split::from_parts(columns, parts, None) }
     }))
 }
 

@@ -17,6 +17,8 @@ pub struct ThroughMap {
     factors: Vec<Rgb>,
     /// By how much the interpolant bends at each column: second differences, luminous.
     bends: Vec<f64>,
+    /// Where the peak may end within a column, the largest luminous value there or next door; elsewhere 0.
+    edges: Vec<f64>,
 }
 
 /// Share of the second difference by which a smooth function can depart from the scaled interpolant: a parabola departs by
@@ -26,7 +28,7 @@ const BEND_SHARE: f64 = 1.0 / 3.0;
 impl ThroughMap {
     /// Nothing goes through.
     pub fn none() -> Self {
-        Self { values: Vec::new(), factors: Vec::new(), bends: Vec::new() }
+        Self { values: Vec::new(), factors: Vec::new(), bends: Vec::new(), edges: Vec::new() }
     }
 
     /// From the mean of each column.
@@ -43,7 +45,13 @@ impl ThroughMap {
             })
             .collect();
         let bends = (0..values.len()).map(|c| bend(columns, &values, c)).collect();
-        Self { values, factors, bends }
+        let edges = (0..values.len()).map(|c| edge(columns, &values, c)).collect();
+        Self { values, factors, bends, edges }
+    }
+
+    /// Does the peak end within the column of a point, at a cut-off or at grazing incidence? Then what T may reach there [-].
+    pub fn edge(&self, columns: &Columns, p: DVec2) -> Option<f64> {
+        self.edges.get(columns.index(p)).copied().filter(|&edge| edge > 0.0)
     }
 
     /// By how much the truth can depart from the interpolant at a point, if it is as smooth as the columns look [-].
@@ -121,6 +129,14 @@ fn mean(columns: &Columns, values: &[Rgb], column: usize) -> Rgb {
             .sum(),
         Columns::Patches(basis) => mean_over_patch(basis, values, column),
     }
+}
+
+/// The largest luminous value of a column and those next to it, if one of them has none or the column reaches grazing incidence.
+fn edge(columns: &Columns, values: &[Rgb], column: usize) -> f64 {
+    let own = luminance(values[column]);
+    let around = columns.neighbours(column).into_iter().map(|c| luminance(values[c]));
+    let ends = columns.is_grazing(column) || around.clone().any(|v| v <= 0.0);
+    if own > 0.0 && ends { around.fold(own, f64::max) } else { 0.0 }
 }
 
 /// Sum of the second differences along both coordinates at a column, luminous.

@@ -2,13 +2,20 @@
 //!
 //! [`Split`] is rule 3, done once in the data. [`reference`] holds rules 1 and 2, decided anew at every hit, for comparison.
 
+mod fit;
+mod instrument;
 mod interpolate;
+mod judge;
+mod neighbourhood;
+mod noise;
 pub mod reference;
+mod shape;
 mod split;
 mod surround;
 
-pub use split::{ColumnPeak, Split};
-pub use surround::NARROWEST;
+pub use instrument::Instrument;
+pub use shape::NARROWEST;
+pub use split::{ColumnPeak, Part, Split};
 
 /// Which part of a table goes straight through.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

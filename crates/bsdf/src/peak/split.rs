@@ -1,23 +1,19 @@
 //! Rule 3: the table as residual plus delta, once, column by column.
 
 use super::{
+    instrument::{self, Instrument},
     interpolate::ThroughMap,
-    surround::{self, Estimate, Neighbourhood},
+    judge::Judged,
+    neighbourhood::Neighbourhood,
+    surround,
 };
 use crate::{
     distribution::{Distribution, to_rgb},
-    table::{Cell, Columns},
+    table::Columns,
 };
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use sunpeak_core::{Rgb, gray, luminance};
-
-/// A peak must stand above its surround by this share of it: the model of the surround is off by up to so much where lobes
-/// are not Gaussian.
-pub const MIN_CONTRAST: f64 = 0.1;
-
-/// … and by so many standard errors of the surround (one false peak in 16 000 columns of Gaussian noise).
-pub const MIN_SIGNIFICANCE: f64 = 4.0;
 
 /// The through peak of a distribution.
 #[derive(Debug)]
@@ -27,6 +23,7 @@ pub struct Split {
     first: Vec<u32>,
     overlay: Vec<Overlay>,
     map: ThroughMap,
+    instrument_fwhm_deg: Option<f64>,
 }
 
 /// What the split found in one column of the table.
@@ -44,6 +41,9 @@ pub struct ColumnPeak {
     pub lobe_sigma: f64,
 }
 
+/// A column's peak, and the cells that are lowered with their surround [1/sr].
+pub type Part = (ColumnPeak, Vec<(usize, Rgb)>);
+
 /// A cell of the table that is lowered to its surround.
 #[derive(Clone, Copy, Debug)]
 struct Overlay {
@@ -54,98 +54,54 @@ struct Overlay {
 impl Split {
     /// Nothing split off.
     pub fn none() -> Self {
-        Self { columns: Vec::new(), first: Vec::new(), overlay: Vec::new(), map: ThroughMap::none() }
+        Self::empty(None)
     }
 
-    /// Split a distribution of transmission.
-    pub fn of(distribution: &Distribution) -> Self {
+    fn empty(instrument_fwhm_deg: Option<f64>) -> Self {
+        Self {
+            columns: Vec::new(),
+            first: vec![0],
+            overlay: Vec::new(),
+            map: ThroughMap::none(),
+            instrument_fwhm_deg,
+        }
+    }
+
+    /// Split a distribution of transmission that an instrument may have blurred.
+    pub fn of(distribution: &Distribution, instrument: Instrument) -> Self {
         let (table, columns) = (distribution.luminous(), distribution.columns());
-        let neighbourhoods: Vec<_> =
-            (0..columns.len()).into_par_iter().map(|c| Neighbourhood::of(table, columns, c)).collect();
         let channels: Vec<&[f32]> = match distribution.color() {
             None => vec![table.values()],
             Some([x, z]) => vec![table.values(), x, z],
         };
-        let estimates = surround::estimate(table, &neighbourhoods, &channels);
-        let mut split =
-            Self { columns: Vec::new(), first: vec![0], overlay: Vec::new(), map: ThroughMap::none() };
-        for (neighbourhood, (lobe_sigma, estimates)) in neighbourhoods.iter().zip(&estimates) {
-            split.add_column(&neighbourhood.candidates, &channels, estimates, *lobe_sigma);
-        }
-        split.map = ThroughMap::new(columns, split.columns.iter().map(|c| c.through).collect());
-        split
-    }
-
-    fn add_column(
-        &mut self,
-        cells: &[Cell],
-        channels: &[&[f32]],
-        estimates: &[Vec<Estimate>],
-        lobe_sigma: f64,
-    ) {
-        let value = |channel: usize, cell: &Cell| f64::from(channels[channel][cell.index]);
-        let excess = |channel: usize, surround: &dyn Fn(&Estimate) -> f64| -> f64 {
-            cells
-                .iter()
-                .zip(&estimates[channel])
-                .map(|(c, e)| (value(channel, c) - surround(e)).max(0.0) * c.projected_solid_angle)
-                .sum()
+        let instrument_fwhm_deg = match instrument {
+            Instrument::None => None,
+            Instrument::FwhmDeg(fwhm) => Some(fwhm),
+            Instrument::Find => instrument::find(table, columns),
         };
-        let luminous = excess(0, &|e| e.value);
-        let around: f64 =
-            cells.iter().zip(&estimates[0]).map(|(c, e)| e.value.max(0.0) * c.projected_solid_angle).sum();
-        let error: f64 =
-            cells.iter().zip(&estimates[0]).map(|(c, e)| e.error * c.projected_solid_angle).sum();
-        let limit = (MIN_CONTRAST * around).max(MIN_SIGNIFICANCE * error);
-        let accepted = luminous > limit && luminous > 0.0;
-        let mut through = Rgb::ZERO;
-        if accepted {
-            let rest =
-                |channel: usize, cell: &Cell, e: &Estimate| e.value.clamp(0.0, value(channel, cell)) as f32;
-            for (k, cell) in cells.iter().enumerate() {
-                let surround: Vec<f32> =
-                    (0..channels.len()).map(|ch| rest(ch, cell, &estimates[ch][k])).collect();
-                let surround = in_channels(&surround);
-                self.overlay
-                    .push(Overlay { index: cell.index as u32, surround: surround.as_vec3().to_array() });
-                // From the stored numbers, so that residual and peak make up the table exactly.
-                let stored = DVec3::from(surround.as_vec3());
-                let whole: Vec<f32> = channels.iter().map(|c| c[cell.index]).collect();
-                through += (in_channels(&whole) - stored).max(Rgb::ZERO) * cell.projected_solid_angle;
-            }
-        }
-        // Two standard errors: of the surround, and of the candidates' own values.
-        let counted: f64 = cells
-            .iter()
-            .zip(&estimates[0])
-            .map(|(c, e)| e.variance_ratio * value(0, c) * c.projected_solid_angle.powi(2))
-            .sum();
-        let noise = 2.0 * (error * error + counted).sqrt();
-        self.columns.push(ColumnPeak {
-            through,
-            contrast: if around > 0.0 {
-                luminous / around
-            } else if luminous > 0.0 {
-                f64::INFINITY
-            } else {
-                0.0
-            },
-            detection_limit: limit,
-            interval: if accepted {
-                [(excess(0, &|e| e.range[1]) - noise).max(0.0), excess(0, &|e| e.range[0]) + noise]
-            } else {
-                [0.0, limit.max(luminous)]
-            },
-            lobe_sigma,
+        let blur = instrument_fwhm_deg.map(instrument::blur);
+        let neighbourhoods: Vec<_> =
+            (0..columns.len()).into_par_iter().map(|c| Neighbourhood::of(table, columns, c, blur)).collect();
+        let surrounds = surround::estimate(table, columns, &neighbourhoods, &channels);
+        let judged: Vec<Judged> = neighbourhoods
+            .par_iter()
+            .zip(&surrounds)
+            .map(|(n, surround)| Judged::new(n, &channels, surround))
+            .collect();
+        let certain: Vec<bool> = judged.iter().map(Judged::is_certain).collect();
+        let parts = judged.iter().enumerate().map(|(column, judged)| {
+            let beside = || columns.neighbours(column).into_iter().any(|c| certain[c]);
+            let accepted = certain[column] || judged.is_likely() && beside();
+            judged.part(accepted, in_channels, &channels)
         });
-        self.first.push(self.overlay.len() as u32);
+        Self::from_parts(columns, parts.collect(), instrument_fwhm_deg)
     }
 
     /// What was found before: for each column its peak, and the cells that are lowered, with their surround [1/sr].
-    pub fn from_parts(division: &Columns, parts: Vec<(ColumnPeak, Vec<(usize, Rgb)>)>) -> Self {
-        let mut split =
-            Self { columns: Vec::new(), first: vec![0], overlay: Vec::new(), map: ThroughMap::none() };
-        for (column, cells) in parts {
+    pub fn from_parts(division: &Columns, parts: Vec<Part>, instrument_fwhm_deg: Option<f64>) -> Self {
+        let mut split = Self::empty(instrument_fwhm_deg);
+        for (column, mut cells) in parts {
+            cells.sort_by_key(|c| c.0);
             split.overlay.extend(cells.into_iter().map(|(index, surround)| Overlay {
                 index: index as u32,
                 surround: surround.as_vec3().to_array(),
@@ -155,6 +111,11 @@ impl Split {
         }
         split.map = ThroughMap::new(division, split.columns.iter().map(|c| c.through).collect());
         split
+    }
+
+    /// Full width at half maximum [deg] of the instrument's blur that was taken for the peak; none for a delta.
+    pub fn instrument_fwhm_deg(&self) -> Option<f64> {
+        self.instrument_fwhm_deg
     }
 
     /// The cells of a column that are lowered to their surround [1/sr].
@@ -172,8 +133,9 @@ impl Split {
     /// The surround [1/sr] in place of a cell's value, where the cell is part of its column's peak.
     pub fn surround(&self, column: usize, index: usize) -> Option<Rgb> {
         let range = *self.first.get(column)? as usize..*self.first.get(column + 1)? as usize;
-        let cell = self.overlay[range].iter().find(|c| c.index as usize == index)?;
-        Some(DVec3::from(glam::Vec3::from(cell.surround)))
+        let cells = &self.overlay[range];
+        let at = cells.binary_search_by_key(&(index as u32), |c| c.index).ok()?;
+        Some(DVec3::from(glam::Vec3::from(cells[at].surround)))
     }
 
     /// Through transmittance [-] at a point of incidence: the interpolant, scaled to each column's mean.
@@ -182,7 +144,8 @@ impl Split {
     }
 
     /// Lowest and highest luminous transmittance [-] that the data allow at a point of incidence: the column's interval, and the
-    /// bend of the interpolant, which the data leave open within a column. Nominally 95 %.
+    /// bend of the interpolant, which the data leave open within a column; anything up to the values next door where the peak ends
+    /// within the column. Nominally 95 %.
     pub fn interval(&self, columns: &Columns, p_in: DVec2) -> [f64; 2] {
         let Some(column) = self.columns.get(columns.index(p_in)) else { return [0.0, 0.0] };
         let mean = luminance(column.through);
@@ -191,7 +154,16 @@ impl Split {
         }
         let here = luminance(self.through(columns, p_in));
         let bend = self.map.bend(columns, p_in);
-        [(here * column.interval[0] / mean - bend).max(0.0), here * column.interval[1] / mean + bend]
+        let [low, high] = [here * column.interval[0] / mean - bend, here * column.interval[1] / mean + bend];
+        match self.map.edge(columns, p_in) {
+            Some(edge) => [0.0, high.max(edge)],
+            None => [low.max(0.0), high],
+        }
+    }
+
+    /// Does the peak end within the column of a point: is it a column across a cut-off, or one that reaches grazing incidence?
+    pub fn is_edge(&self, columns: &Columns, p_in: DVec2) -> bool {
+        self.map.edge(columns, p_in).is_some()
     }
 
     /// Does any column have a peak?

@@ -1,26 +1,21 @@
 //! What the smooth BTDF would be under the peak, judged from the cells around it.
 //!
-//! Around the straight direction a smooth lobe is modelled as `b + a exp(-d²/2s²)`, `d` the distance from it on the disk of projected
-//! directions (the lobe follows the straight direction while the incidence moves over its column). Base `b` and height `a` are
-//! fitted to each column, by least squares weighted to the nearest cells; the width `s` is chosen where this column and the table
-//! as a whole agree best with their cells; equals are averaged. Both the data and the model are averages over
-//! cells, so that coarse bases are treated fairly.
+//! Around the straight direction a smooth lobe is modelled as `b + a g`, `g` a Gaussian that follows the straight direction while the
+//! incidence moves over its column. Base `b` and height `a` are fitted to each column, by least squares weighted to the nearest
+//! cells; the Gaussian's width, and whether it keeps it in angle or on the disk, are chosen where this column and the table as a
+//! whole agree best with their cells; equals are averaged. Both the data and the model are averages over cells, so that coarse
+//! bases are treated fairly.
 
-use crate::table::{Cell, Columns, Table};
-use glam::DVec2;
+use super::{
+    fit::Fit,
+    neighbourhood::Neighbourhood,
+    noise::{ColumnNoise, Noise, median},
+    shape::{Shape, shapes},
+};
+use crate::table::{Columns, Table};
 use rayon::prelude::*;
 
-/// How far the fit looks, in widths of the candidate cell.
-const REACH: f64 = 4.1;
-
-/// Widest lobe [projected units]: wider ones look flat under any cell.
-const WIDEST: f64 = 1.0;
-
-/// Narrowest lobe that a basis can tell from a delta, in cell widths: a Gaussian whose full width at tenth maximum is two cells
-/// (4.29 s = 2) still lights its neighbours.
-pub const NARROWEST: f64 = 2.0 / 4.29;
-
-/// A width is as good as the best one if its misfit is within this factor of it …
+/// A shape is as good as the best one if its misfit is within this factor of it …
 const AS_GOOD: f64 = 1.3;
 
 /// … and still possible within this one.
@@ -29,252 +24,137 @@ const PLAUSIBLE: f64 = 4.0;
 /// Squared relative misfit below which the data do not tell (0.03 %: the digits that files have).
 const GOOD_ENOUGH: f64 = 1e-7;
 
-/// Points a side of a cell for averaging (Gauss-Legendre): exact for cubics over each side.
-const QUADRATURE: [(f64, f64); 2] = [(0.211_324_865_405_187_1, 0.5), (0.788_675_134_594_812_9, 0.5)];
-
-/// The same for matrices, whose patches are as wide as lobes: exact to the fifth power.
-const QUADRATURE_WIDE: [(f64, f64); 3] =
-    [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
-
-/// The smooth BTDF under one candidate cell.
+/// The smooth BTDF under one cell of the peak.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// Most likely value [1/sr].
     pub value: f64,
-    /// Its standard error, from the misfit around it [1/sr].
+    /// Standard error of it [1/sr].
     pub error: f64,
-    /// Variance of a cell's value over the value [1/sr], from the same misfit: with counted rays it is the same for bright and
-    /// dark cells.
-    pub variance_ratio: f64,
-    /// Lowest and highest value over all lobe widths that fit about as well [1/sr].
+    /// Standard deviation of a cell that has this value [1/sr].
+    pub spread: f64,
+    /// Lowest and highest value over all lobe shapes that fit about as well [1/sr].
     pub range: [f64; 2],
 }
 
-/// A column's candidates and what lies around them.
-pub struct Neighbourhood {
-    /// Cells that the straight direction touches.
-    pub candidates: Vec<Cell>,
-    around: Vec<Cell>,
-    weights: Vec<f64>,
-    /// Squared distances of quadrature points with their weights, candidates first.
-    distances: Vec<Vec<(f64, f64)>>,
+/// The surround of one column.
+#[derive(Clone, Debug)]
+pub struct Surround {
+    /// By channel, by cell of the core.
+    pub cells: Vec<Vec<Estimate>>,
+    /// Standard deviation of the smooth lobe.
+    pub lobe_sigma: f64,
+    /// How the table's cells scatter around what they should be.
+    pub noise: Noise,
+    /// The same with what the model of the lobe does not fit around this column.
+    pub misfit: Noise,
 }
 
-/// The surround of every candidate of every column, and the width of the lobe that it assumes.
+/// The surround of every column's core, by channel.
 pub fn estimate(
     table: &Table,
+    columns: &Columns,
     neighbourhoods: &[Neighbourhood],
     channels: &[&[f32]],
-) -> Vec<(f64, Vec<Vec<Estimate>>)> {
-    let widths = widths(table);
-    let fits: Vec<Vec<ColumnFit>> = neighbourhoods
+) -> Vec<Surround> {
+    let shapes = shapes(table);
+    let fits: Vec<ColumnFits> = neighbourhoods
         .par_iter()
-        .map(|n| {
-            let features = n.features(&widths);
-            features.iter().map(|f| n.fit(channels[0], f)).collect()
-        })
+        .enumerate()
+        .map(|(column, n)| ColumnFits::new(table, columns, column, n, channels, &shapes))
         .collect();
-    let table_misfit: Vec<f64> = (0..widths.len())
+    let table_misfit: Vec<f64> = (0..shapes.len())
         .map(|k| {
-            let (sum, count) = fits.iter().fold((0.0, 0.0), |(s, c), f| match f[k].misfit {
-                Some(m) => (s + m, c + 1.0),
-                None => (s, c),
-            });
-            if count > 0.0 { sum / count } else { 0.0 }
+            let found = fits.iter().map(|f| &f.channels[0][k]).filter(|f| f.is_something());
+            // Not the mean: columns that no shape fits, as at grazing incidence, must not decide for the others.
+            median(found.map(Fit::misfit).collect())
         })
         .collect();
-    neighbourhoods
-        .par_iter()
-        .zip(&fits)
-        .map(|(n, column)| {
-            let misfit = |k: usize| column[k].misfit.unwrap_or(0.0) + table_misfit[k];
-            let best = (0..widths.len()).map(misfit).fold(f64::INFINITY, f64::min);
-            // Widths that fit about as well share the estimate, so that it is a continuous function of the data.
-            let tolerance = (AS_GOOD - 1.0) * best + GOOD_ENOUGH;
-            let shares: Vec<f64> =
-                (0..widths.len()).map(|k| (1.0 - (misfit(k) - best) / tolerance).max(0.0)).collect();
-            let total: f64 = shares.iter().sum();
-            let average = |of: &dyn Fn(usize) -> f64| -> f64 {
-                (0..widths.len()).filter(|&k| shares[k] > 0.0).map(|k| shares[k] / total * of(k)).sum()
-            };
-            let plausible = |k: usize| misfit(k) <= PLAUSIBLE * (best + GOOD_ENOUGH);
-            let features = n.features(&widths);
-            let estimates = channels
+    let noise: Vec<ColumnNoise> = fits.iter().map(|f| f.noise).collect();
+    let pooled = Noise::of_table(&noise);
+    fits.par_iter().map(|f| f.surround(&shapes, &table_misfit, pooled)).collect()
+}
+
+/// All shapes fitted to one column.
+struct ColumnFits {
+    /// By channel, by shape.
+    channels: Vec<Vec<Fit>>,
+    /// By shape: a lobe of height 1 averaged over the cells of the core.
+    at_core: Vec<Vec<f64>>,
+    noise: ColumnNoise,
+}
+
+impl ColumnFits {
+    fn new(
+        table: &Table,
+        columns: &Columns,
+        column: usize,
+        n: &Neighbourhood,
+        channels: &[&[f32]],
+        shapes: &[Shape],
+    ) -> Self {
+        let averages = n.averages(table, columns, column);
+        let mut found = Self {
+            channels: vec![Vec::with_capacity(shapes.len()); channels.len()],
+            at_core: Vec::with_capacity(shapes.len()),
+            noise: ColumnNoise::default(),
+        };
+        let mut best = (f64::INFINITY, Fit::default(), Vec::new());
+        for &shape in shapes {
+            let (at_core, around) = (averages.over_core(shape), averages.around(shape));
+            for (fits, values) in found.channels.iter_mut().zip(channels) {
+                fits.push(Fit::new(n, values, &at_core, &around));
+            }
+            if let Some(fit) = found.channels[0].last().filter(|f| f.misfit() < best.0) {
+                best = (fit.misfit(), *fit, around);
+            }
+            found.at_core.push(at_core);
+        }
+        let (_, fit, lobe) = best;
+        found.noise = ColumnNoise::of(
+            n.around
                 .iter()
-                .map(|values| {
-                    let fits: Vec<_> = features.iter().map(|f| n.fit(values, f)).collect();
-                    (0..n.candidates.len())
-                        .map(|c| {
-                            let value = |k: usize| fits[k].candidates[c].0;
-                            let possible = (0..widths.len()).filter(|&k| plausible(k)).map(value);
-                            Estimate {
-                                value: average(&value),
-                                error: average(&|k| fits[k].candidates[c].1),
-                                variance_ratio: average(&|k| fits[k].variance_ratio),
-                                range: [
-                                    possible.clone().fold(f64::INFINITY, f64::min),
-                                    possible.fold(0.0, f64::max),
-                                ],
-                            }
-                        })
-                        .collect()
-                })
-                .collect();
-            (average(&|k| widths[k]), estimates)
-        })
-        .collect()
-}
-
-/// Lobe widths to try, widest first, each squared width 1/sqrt(2) of the one before.
-fn widths(table: &Table) -> Vec<f64> {
-    let narrowest = NARROWEST * cell_width(table.smallest_projected_solid_angle());
-    let mut widths = vec![WIDEST];
-    while let Some(&last) = widths.last() {
-        let next = last * 0.5f64.powf(0.25);
-        if next < narrowest {
-            break;
-        }
-        widths.push(next);
+                .zip(&lobe)
+                .skip(n.fringe.len())
+                .map(|((cell, _), &g)| (f64::from(channels[0][cell.index]), fit.value(g))),
+        );
+        found
     }
-    widths
-}
 
-fn cell_width(projected_solid_angle: f64) -> f64 {
-    projected_solid_angle.sqrt()
-}
-
-struct ColumnFit {
-    /// Squared misfit relative to the data; none if there is nothing to fit.
-    misfit: Option<f64>,
-    /// Variance over value [1/sr].
-    variance_ratio: f64,
-    /// Value and standard error for each candidate.
-    candidates: Vec<(f64, f64)>,
-}
-
-impl Neighbourhood {
-    /// Find a column's candidates and the cells around them.
-    pub fn of(table: &Table, columns: &Columns, column: usize) -> Self {
-        let cells = table.cells(columns, column);
-        let touched = path(table, columns, column);
-        let mut candidates = Vec::new();
-        let mut others = Vec::new();
-        for cell in cells {
-            if touched.contains(&cell.index) { candidates.push(cell) } else { others.push(cell) }
-        }
-        let straight = columns.point(column, [0.5, 0.5]);
-        let width = candidates.iter().map(|c| cell_width(c.projected_solid_angle)).fold(0.0, f64::max);
-        let mut around = Vec::new();
-        let mut weights = Vec::new();
-        for cell in others {
-            let distance = (table.point(&cell, [0.5, 0.5]) - straight).length();
-            if distance <= REACH * width {
-                weights.push(1.0 / (1.0 + (distance / width).powi(2)));
-                around.push(cell);
+    fn surround(&self, shapes: &[Shape], table_misfit: &[f64], pooled: Noise) -> Surround {
+        let misfit = |k: usize| self.channels[0][k].misfit() + table_misfit[k];
+        let best = (0..shapes.len()).map(misfit).fold(f64::INFINITY, f64::min);
+        // Shapes that fit about as well share the estimate, so that it is a continuous function of the data.
+        let tolerance = (AS_GOOD - 1.0) * best + GOOD_ENOUGH;
+        let shares: Vec<f64> =
+            (0..shapes.len()).map(|k| (1.0 - (misfit(k) - best) / tolerance).max(0.0)).collect();
+        let total: f64 = shares.iter().sum();
+        let average = |of: &dyn Fn(usize) -> f64| -> f64 {
+            (0..shapes.len()).filter(|&k| shares[k] > 0.0).map(|k| shares[k] / total * of(k)).sum()
+        };
+        let possible: Vec<usize> =
+            (0..shapes.len()).filter(|&k| misfit(k) <= PLAUSIBLE * (best + GOOD_ENOUGH)).collect();
+        let local = pooled.at_least(|kind| average(&|k| self.channels[0][k].noise_ratios()[kind]));
+        let estimate = |fits: &[Fit], cell: usize| {
+            let value = |k: usize| fits[k].value(self.at_core[k][cell]);
+            let likely = average(&value);
+            let variance = |k: usize| fits[k].variance().max(pooled.variance(likely));
+            let leverage = |k: usize| fits[k].leverage(self.at_core[k][cell]);
+            Estimate {
+                value: likely,
+                error: average(&|k| (variance(k) * leverage(k)).sqrt()),
+                spread: average(&|k| variance(k).sqrt()),
+                range: [
+                    possible.iter().map(|&k| value(k)).fold(f64::INFINITY, f64::min),
+                    possible.iter().map(|&k| value(k)).fold(0.0, f64::max),
+                ],
             }
-        }
-        let rule: &[(f64, f64)] =
-            if matches!(table, Table::Matrix(_)) { &QUADRATURE_WIDE } else { &QUADRATURE };
-        let incident: Vec<(DVec2, f64)> =
-            product(rule).into_iter().map(|(u, w)| (columns.point(column, u), w)).collect();
-        let distances = candidates
+        };
+        let cells = self
+            .channels
             .iter()
-            .chain(&around)
-            .map(|cell| {
-                let exits = product(rule).into_iter().map(|(u, w)| (table.point(cell, u), w));
-                exits
-                    .flat_map(|(out, w)| {
-                        incident.iter().map(move |(p, v)| ((out - *p).length_squared(), w * v))
-                    })
-                    .collect()
-            })
+            .map(|fits| (0..self.at_core[0].len()).map(|cell| estimate(fits, cell)).collect())
             .collect();
-        Self { candidates, around, weights, distances }
+        Surround { cells, lobe_sigma: average(&|k| shapes[k].sigma), misfit: local, noise: pooled }
     }
-
-    /// The lobe of height 1 averaged over each cell, for each width.
-    fn features(&self, widths: &[f64]) -> Vec<Vec<f64>> {
-        widths
-            .iter()
-            .map(|s| {
-                let k = -0.5 / (s * s);
-                self.distances.iter().map(|d| d.iter().map(|(d2, w)| w * (k * d2).exp()).sum()).collect()
-            })
-            .collect()
-    }
-
-    /// Least squares for base and height, neither negative.
-    fn fit(&self, values: &[f32], features: &[f64]) -> ColumnFit {
-        let (at_candidates, at_others) = features.split_at(self.candidates.len());
-        let mut m = [0.0; 6]; // sums of w, wg, wgg, wy, wgy, wyy
-        for ((cell, &w), &g) in self.around.iter().zip(&self.weights).zip(at_others) {
-            let y = f64::from(values[cell.index]);
-            for (sum, term) in m.iter_mut().zip([1.0, g, g * g, y, g * y, y * y]) {
-                *sum += w * term;
-            }
-        }
-        let [w, wg, wgg, wy, wgy, wyy] = m;
-        if w <= 0.0 || wyy <= 0.0 {
-            let candidates = vec![(0.0, 0.0); self.candidates.len()];
-            return ColumnFit { misfit: None, variance_ratio: 0.0, candidates };
-        }
-        let determinant = w * wgg - wg * wg;
-        let (mut base, mut height) = (wy / w, 0.0);
-        let mut two_unknowns = false;
-        if determinant > 1e-9 * w * wgg {
-            let b = (wgg * wy - wg * wgy) / determinant;
-            let a = (w * wgy - wg * wy) / determinant;
-            if b >= 0.0 && a >= 0.0 {
-                (base, height, two_unknowns) = (b, a, true);
-            } else if b < 0.0 && wgg > 0.0 {
-                (base, height) = (0.0, wgy / wgg);
-            }
-        }
-        let square = wyy - 2.0 * (base * wy + height * wgy)
-            + base * base * w
-            + 2.0 * base * height * wg
-            + height * height * wgg;
-        let square = square.max(0.0);
-        // Mean square misfit of a cell next to the peak (weight 1), and how it grows towards the middle of the fit.
-        let variance = square / w;
-        let candidates = at_candidates
-            .iter()
-            .map(|&g| {
-                let leverage = if two_unknowns {
-                    (wgg - 2.0 * g * wg + g * g * w) / determinant
-                } else if base == 0.0 && wgg > 0.0 {
-                    g * g / wgg
-                } else {
-                    1.0 / w
-                };
-                (base + height * g, (variance * (1.0 + leverage.max(0.0))).sqrt())
-            })
-            .collect();
-        ColumnFit { misfit: Some(square / wyy), variance_ratio: square / wy, candidates }
-    }
-}
-
-fn product(rule: &[(f64, f64)]) -> Vec<([f64; 2], f64)> {
-    rule.iter().flat_map(|&(u, a)| rule.iter().map(move |&(v, b)| ([u, v], a * b))).collect()
-}
-
-/// Indices of the cells that the straight direction sweeps while the incidence moves over its column.
-fn path(table: &Table, columns: &Columns, column: usize) -> Vec<usize> {
-    // Off the border on which the straight direction runs in isotropic trees.
-    const BESIDE: f64 = 1e-7;
-    let n = if matches!(table, Table::Matrix(_)) { 16 } else { 2 };
-    let mut touched = Vec::new();
-    for i in 0..n * n {
-        let u = [((i % n) as f64 + 0.5) / n as f64, ((i / n) as f64 + 0.5) / n as f64];
-        let p = columns.point(column, u);
-        // Columns of isotropic tables have their points on the x axis already.
-        let sides: &[f64] = if table.is_isotropic() { &[-BESIDE, BESIDE] } else { &[0.0] };
-        for &dy in sides {
-            let index = table.index(p, p + DVec2::new(0.0, dy));
-            if !touched.contains(&index) {
-                touched.push(index);
-            }
-        }
-    }
-    touched
 }

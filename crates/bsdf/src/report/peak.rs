@@ -4,6 +4,7 @@ use super::{Range, azimuths, on_side};
 use crate::{
     bsdf::{Bsdf, Mode},
     incident::Incident,
+    kernel::TENTH_WIDTH,
     peak::{NARROWEST, PeakRule},
     proposal::Oriented,
     table::Table,
@@ -20,9 +21,6 @@ pub const THROUGH_AZIMUTHS: usize = 8;
 
 /// Step of the search for the angles between which the peak is taken [deg].
 const SEARCH_STEP_DEG: f64 = 0.5;
-
-/// Full width at tenth maximum of a Gaussian over its standard deviation: 2 sqrt(2 ln 10).
-const TENTH_WIDTH: f64 = 4.291_932_052_578;
 
 /// What the split does on one side.
 #[derive(Clone, Debug, PartialEq)]

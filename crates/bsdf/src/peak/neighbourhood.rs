@@ -1,0 +1,211 @@
+//! Where a column's peak lies, and what lies around it.
+
+use super::shape::{Distances, Shape};
+use crate::{
+    kernel::{Kernel, Spread},
+    table::{Cell, Columns, Table},
+};
+use glam::DVec2;
+use std::{cell::OnceCell, collections::HashMap};
+
+/// How far the fit looks, in widths of the peak's region.
+const REACH: f64 = 4.1;
+
+/// Share of an instrument's blurred peak whose cells are measured; the rest of it is known from its shape.
+const CORE: f64 = 0.9;
+
+/// Share of the blurred peak in one cell below which it is nothing.
+const LEAST_SHARE: f64 = 1e-6;
+
+/// Off the border on which the straight direction runs in isotropic trees.
+const BESIDE: f64 = 1e-7;
+
+/// Points a side of a cell for averaging with their weights (Gauss-Legendre): exact to the third, fifth, seventh, ninth power.
+const RULES: [&[(f64, f64)]; 4] = [
+    &[(0.211_324_865_405_187_1, 0.5), (0.788_675_134_594_812_9, 0.5)],
+    &[(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)],
+    &[
+        (0.069_431_844_202_973_7, 0.173_927_422_568_727),
+        (0.330_009_478_207_571_9, 0.326_072_577_431_273),
+        (0.669_990_521_792_428_1, 0.326_072_577_431_273),
+        (0.930_568_155_797_026_3, 0.173_927_422_568_727),
+    ],
+    &[
+        (0.046_910_077_030_668, 0.118_463_442_528_094_5),
+        (0.230_765_344_947_158_5, 0.239_314_335_249_683_2),
+        (0.5, 0.284_444_444_444_444_4),
+        (0.769_234_655_052_841_5, 0.239_314_335_249_683_2),
+        (0.953_089_922_969_332, 0.118_463_442_528_094_5),
+    ],
+];
+
+/// Widths of a lobe in cells from which the first rule is enough, and the second.
+const ENOUGH: [f64; 2] = [1.2, 0.7];
+
+/// The finest rule pays in trees of no more columns than this: cells across the diagonals of the square have a kink.
+const MOST_FINE_COLUMNS: usize = 1024;
+
+/// A cell and the part of the straight flux that an instrument's blur puts there.
+#[derive(Clone, Copy, Debug)]
+pub struct Blurred {
+    /// The cell.
+    pub cell: Cell,
+    /// Share of the column's straight flux [-].
+    pub share: f64,
+}
+
+/// A column's cells: those that hold its peak, and those from which the rest is judged.
+#[derive(Debug)]
+pub struct Neighbourhood {
+    /// Cells whose excess is measured: those that the straight direction touches or, with a blur, most of it.
+    pub core: Vec<Blurred>,
+    /// Cells with the blur's tails.
+    pub fringe: Vec<Blurred>,
+    /// Cells around the core with their weights, the fringe first.
+    pub around: Vec<(Cell, f64)>,
+    /// Share of the straight flux that the core holds.
+    pub core_share: f64,
+    cell_width: f64,
+}
+
+impl Neighbourhood {
+    /// Find a column's cells; `blur` is what the instrument made of a delta.
+    pub fn of(table: &Table, columns: &Columns, column: usize, blur: Option<Spread>) -> Self {
+        let (touched, shares) = landing(table, columns, column, blur);
+        let (mut core, mut fringe, mut others) = (Vec::new(), Vec::new(), Vec::new());
+        for cell in table.cells(columns, column) {
+            let share = shares.iter().find(|s| s.0 == cell.index).map_or(0.0, |s| s.1);
+            if touched.contains(&cell.index) {
+                core.push(Blurred { cell, share });
+            } else if share > LEAST_SHARE {
+                fringe.push(Blurred { cell, share });
+            } else {
+                others.push(cell);
+            }
+        }
+        let mut core_share: f64 = core.iter().map(|c| c.share).sum();
+        // The densest part of the blur belongs to the core.
+        let density = |b: &Blurred| b.share / b.cell.projected_solid_angle;
+        fringe.sort_by(|a, b| density(b).total_cmp(&density(a)));
+        let mut taken = 0;
+        while taken < fringe.len() && core_share < CORE {
+            core_share += fringe[taken].share;
+            taken += 1;
+        }
+        core.extend(fringe.drain(..taken));
+        let mut found = Self { core, fringe, around: Vec::new(), core_share, cell_width: 0.0 };
+        found.look_around(table, columns.point(column, [0.5, 0.5]), others);
+        found
+    }
+
+    fn look_around(&mut self, table: &Table, straight: DVec2, others: Vec<Cell>) {
+        let distance = |cell: &Cell| (table.point(cell, [0.5, 0.5]) - straight).length();
+        let width = |b: &Blurred| b.cell.projected_solid_angle.sqrt();
+        self.cell_width = self.core.iter().map(width).fold(0.0, f64::max);
+        let radius = self.core.iter().map(|b| distance(&b.cell)).fold(0.0, f64::max);
+        let region = self.cell_width.max(radius);
+        let weight = |cell: &Cell| 1.0 / (1.0 + (distance(cell) / region).powi(2));
+        self.around = self.fringe.iter().map(|b| (b.cell, weight(&b.cell))).collect();
+        let near = others.into_iter().filter(|cell| distance(cell) <= REACH * region);
+        self.around.extend(near.map(|cell| (cell, weight(&cell))));
+    }
+
+    /// What a lobe's averages over the core's cells and over those around it follow from.
+    pub fn averages<'a>(&'a self, table: &'a Table, columns: &'a Columns, column: usize) -> Averages<'a> {
+        Averages { n: self, table, columns, column, distances: Default::default() }
+    }
+}
+
+/// Averages of lobes over a neighbourhood's cells.
+#[derive(Debug)]
+pub struct Averages<'a> {
+    n: &'a Neighbourhood,
+    table: &'a Table,
+    columns: &'a Columns,
+    column: usize,
+    /// By rule, made when a lobe asks for it.
+    distances: [OnceCell<Vec<Distances>>; RULES.len()],
+}
+
+impl Averages<'_> {
+    /// A lobe of height 1 averaged over the core's cells.
+    pub fn over_core(&self, shape: Shape) -> Vec<f64> {
+        self.cells(shape)[..self.n.core.len()].iter().map(|d| d.average(shape)).collect()
+    }
+
+    /// The same over the cells around it.
+    pub fn around(&self, shape: Shape) -> Vec<f64> {
+        self.cells(shape)[self.n.core.len()..].iter().map(|d| d.average(shape)).collect()
+    }
+
+    fn cells(&self, shape: Shape) -> &[Distances] {
+        let width = shape.sigma / self.n.cell_width;
+        let wanted = ENOUGH.iter().position(|&enough| width >= enough).unwrap_or(ENOUGH.len());
+        let rule = match (wanted, self.table) {
+            // Patches differ too much in shape for the coarsest rule.
+            (wanted, Table::Matrix(_)) => wanted.max(1),
+            (2, Table::Tree(_)) if self.columns.len() <= MOST_FINE_COLUMNS => 3,
+            (wanted, Table::Tree(_)) => wanted.min(1),
+        };
+        self.distances[rule].get_or_init(|| self.distances(RULES[rule]))
+    }
+
+    fn distances(&self, rule: &[(f64, f64)]) -> Vec<Distances> {
+        let incident: Vec<(DVec2, f64)> =
+            product(rule).into_iter().map(|(u, w)| (self.columns.point(self.column, u), w)).collect();
+        let cells = self.n.core.iter().map(|b| &b.cell).chain(self.n.around.iter().map(|a| &a.0));
+        cells
+            .map(|cell| {
+                let exits = product(rule).into_iter().map(|(u, w)| (self.table.point(cell, u), w));
+                Distances::new(exits.flat_map(|(q, w)| incident.iter().map(move |&(p, v)| (p, q, w * v))))
+            })
+            .collect()
+    }
+}
+
+fn product(rule: &[(f64, f64)]) -> Vec<([f64; 2], f64)> {
+    rule.iter().flat_map(|&(u, a)| rule.iter().map(move |&(v, b)| ([u, v], a * b))).collect()
+}
+
+/// Indices of the cells that the straight direction sweeps while the incidence moves over its column, and the share of the straight
+/// flux in each cell that the blur reaches; without one, all of it lies in the swept cells.
+fn landing(
+    table: &Table,
+    columns: &Columns,
+    column: usize,
+    blur: Option<Spread>,
+) -> (Vec<usize>, Vec<(usize, f64)>) {
+    let n = if matches!(table, Table::Matrix(_)) { 16 } else { 2 };
+    let mut touched = Vec::new();
+    for i in 0..n * n {
+        let u = [((i % n) as f64 + 0.5) / n as f64, ((i / n) as f64 + 0.5) / n as f64];
+        let p = columns.point(column, u);
+        // Columns of isotropic tables have their points on the x axis already.
+        let sides: &[f64] = if table.is_isotropic() { &[-BESIDE, BESIDE] } else { &[0.0] };
+        for &dy in sides {
+            let index = table.index(p, p + DVec2::new(0.0, dy));
+            if !touched.contains(&index) {
+                touched.push(index);
+            }
+        }
+    }
+    let Some(spread) = blur else {
+        let share = 1.0 / touched.len() as f64;
+        let shares = touched.iter().map(|&index| (index, share)).collect();
+        return (touched, shares);
+    };
+    let middle = columns.point(column, [0.5, 0.5]);
+    let width = table.projected_solid_angle(middle, middle + DVec2::new(0.0, BESIDE)).sqrt();
+    let kernel = Kernel::new(spread, width);
+    // Points of the column a standard deviation apart.
+    let n = (width / spread.sigma()).clamp(4.0, 24.0).ceil() as usize;
+    let mut shares = HashMap::new();
+    for i in 0..n * n {
+        let u = [((i % n) as f64 + 0.5) / n as f64, ((i / n) as f64 + 0.5) / n as f64];
+        let p = columns.point(column, u);
+        kernel.around(p, |q, weight| {
+            *shares.entry(table.index(p, q)).or_insert(0.0) += weight / (n * n) as f64
+        });
+    }
+    (touched, shares.into_iter().collect())
+}

@@ -1,0 +1,226 @@
+//! Any product into any basis, by averages over cells.
+
+use super::{
+    Basis, Goniophotometer,
+    product::{Lobe, OtherSide, Product},
+};
+use crate::{
+    bsdf::{Bsdf, Sides},
+    distribution::Distribution,
+    kernel::{Kernel, Spread},
+    table::{Columns, Matrix, Table},
+    tree::Tree,
+    xml::Document,
+};
+use glam::DVec2;
+use rayon::prelude::*;
+use std::{f64::consts::PI, sync::Arc};
+use sunpeak_core::{Error, Result};
+
+/// Points a side over which the smooth part's average is taken, incident and exiting: it is wide against a tree's cells, not
+/// against a patch.
+const TREE_POINTS: usize = 2;
+const PATCH_POINTS: usize = 6;
+
+/// Points a side over which the through transmittance is averaged; its slope is infinite at a cut-off.
+const THROUGH_POINTS: usize = 64;
+
+/// Incident points a side for narrow lobes: so many that they lie a standard deviation apart, within these bounds.
+const LOBE_POINTS: [f64; 2] = [4.0, 40.0];
+
+/// Off the border of two rows, along which the straight direction runs in isotropic trees.
+const BESIDE: f64 = 1e-9;
+
+/// Tabulate a product: transmission by cell averages (the delta's share of each cell is exact), as the goniophotometer sees them,
+/// and diffuse reflection.
+pub fn tabulate(product: &dyn Product, basis: Basis, seen_by: &Goniophotometer) -> Result<Bsdf> {
+    if basis.is_isotropic() && !product.is_isotropic() {
+        return Err(Error::value(format!(
+            "{}: not the same at all azimuths; expected a matrix or a t4 basis",
+            product.name()
+        )));
+    }
+    let side = |product: &dyn Product, seed: u64| {
+        let (table, color) = transmission(product, basis, &Goniophotometer { seed, ..*seen_by });
+        Arc::new(Distribution::with_split(table, color))
+    };
+    let front = side(product, seen_by.seed);
+    // Isotropic products are the same from behind; counted anew, they differ by their noise.
+    let back = if product.is_isotropic() && seen_by.is_exact() {
+        front.clone()
+    } else {
+        side(&OtherSide(product), seen_by.seed ^ 0x5bd1_e995)
+    };
+    let reflection = Arc::new(Distribution::new(diffuse(product.reflectance(), basis), None));
+    let document = Document {
+        name: product.name(),
+        manufacturer: "Sunpeak (synthetic)".into(),
+        structure: basis.structure().into(),
+        ..Document::default()
+    };
+    let sides = Sides {
+        transmission_front: Some(front),
+        transmission_back: Some(back),
+        reflection_front: Some(reflection.clone()),
+        reflection_back: Some(reflection),
+    };
+    Ok(Bsdf::from_sides(document, sides))
+}
+
+fn diffuse(reflectance: f64, basis: Basis) -> Table {
+    let value = (reflectance / PI) as f32;
+    match basis.patches() {
+        Some(basis) => {
+            let values = vec![value; basis.len() * basis.len()];
+            Table::Matrix(Matrix { incident: basis.clone(), exiting: basis, values })
+        }
+        None => Table::Tree(Tree::regular(if basis.is_isotropic() { 3 } else { 4 }, 0, |_| value)),
+    }
+}
+
+/// A luminous table, and CIE X and Z of coloured products.
+type Planes = (Table, Option<[Vec<f32>; 2]>);
+
+fn transmission(product: &dyn Product, basis: Basis, seen_by: &Goniophotometer) -> Planes {
+    let [incident, exiting] = basis.divisions();
+    let averages = Averages { product, incident, exiting, blur: seen_by.blur(), rows: basis.is_isotropic() };
+    let columns: Vec<[Vec<f32>; 3]> =
+        (0..averages.incident.len()).into_par_iter().map(|i| averages.column(i, seen_by)).collect();
+    let plane = |k: usize| {
+        let value = |column: usize, cell: usize| columns[column][k].get(cell).copied().unwrap_or(0.0);
+        into_basis(basis, value)
+    };
+    let color = product.tint().map(|_| [plane(1).into_values(), plane(2).into_values()]);
+    (plane(0), color)
+}
+
+/// A table of the basis from the values by column and exiting cell.
+fn into_basis(basis: Basis, value: impl Fn(usize, usize) -> f32) -> Table {
+    match (basis, basis.patches()) {
+        (_, Some(patches)) => {
+            let n = patches.len();
+            let values = (0..n * n).map(|k| value(k / n, k % n)).collect();
+            Table::Matrix(Matrix { incident: patches.clone(), exiting: patches, values })
+        }
+        (Basis::TensorTree3 { side }, _) => {
+            // The second half of an isotropic tree is not used.
+            let value = |c: [usize; 4]| if c[0] < side / 2 { value(c[0], c[1] * side + c[2]) } else { 0.0 };
+            Table::Tree(Tree::regular(3, side.trailing_zeros() as u8, value))
+        }
+        (Basis::TensorTree4 { side }, _) => {
+            let value = |c: [usize; 4]| value(c[0] * side + c[1], c[2] * side + c[3]);
+            Table::Tree(Tree::regular(4, side.trailing_zeros() as u8, value))
+        }
+        _ => unreachable!("every other basis is a known matrix basis"),
+    }
+}
+
+/// Cell averages of one side of a product.
+struct Averages<'a> {
+    product: &'a dyn Product,
+    incident: Columns,
+    exiting: Columns,
+    /// What the instrument makes of a delta.
+    blur: Option<Spread>,
+    /// The straight direction runs along the border of two rows: each gets half.
+    rows: bool,
+}
+
+impl Averages<'_> {
+    /// Y, X, Z [1/sr] of one incident cell's exiting cells; X and Z are empty for gray products.
+    fn column(&self, column: usize, seen_by: &Goniophotometer) -> [Vec<f32>; 3] {
+        let mut scattered = self.smooth(column);
+        self.add_lobes(column, &mut scattered, |p| self.product.lobe(p));
+        let mut straight = vec![0.0; scattered.len()];
+        match self.blur {
+            Some(spread) => {
+                let lobe = |p: DVec2| Some(Lobe { flux: self.product.through(p), spread });
+                self.add_lobes(column, &mut straight, lobe);
+            }
+            None => self.add_delta(column, &mut straight),
+        }
+        let exact: Vec<f64> = scattered.iter().zip(&straight).map(|(s, t)| s + t).collect();
+        let area = |cell: usize| self.exiting.projected_solid_angle(cell);
+        let seen = seen_by.counts(&exact, area, column);
+        let plane = |tint: f64| {
+            (0..exact.len())
+                .map(|k| {
+                    let share = if exact[k] > 0.0 { seen[k] / exact[k] } else { 0.0 };
+                    (share * (tint * scattered[k] + straight[k])) as f32
+                })
+                .collect()
+        };
+        match self.product.tint() {
+            Some([x, z]) => [plane(1.0), plane(x), plane(z)],
+            None => [plane(1.0), Vec::new(), Vec::new()],
+        }
+    }
+
+    /// Incident points of a column, `n` a side.
+    fn points(&self, column: usize, n: usize) -> Vec<DVec2> {
+        match self.incident {
+            Columns::Radial { .. } => {
+                midpoints(n * n).map(|u| self.incident.point(column, [u, 0.5])).collect()
+            }
+            _ => square(n).map(|u| self.incident.point(column, u)).collect(),
+        }
+    }
+
+    fn smooth(&self, column: usize) -> Vec<f64> {
+        let n = if matches!(self.exiting, Columns::Patches(_)) { PATCH_POINTS } else { TREE_POINTS };
+        let incident = self.points(column, n);
+        let mean_at = |q: DVec2| mean(incident.iter().map(|&p| self.product.smooth(p, q)));
+        (0..self.exiting.len()).map(|o| mean(square(n).map(|u| mean_at(self.exiting.point(o, u))))).collect()
+    }
+
+    fn add_delta(&self, column: usize, values: &mut [f64]) {
+        let points = self.points(column, THROUGH_POINTS);
+        let share = 1.0 / points.len() as f64;
+        let sides: &[f64] = if self.rows { &[-BESIDE, BESIDE] } else { &[0.0] };
+        for p in points {
+            for &y in sides {
+                let cell = self.exiting.index(p + DVec2::new(0.0, y));
+                let flux = share * self.product.through(p) / sides.len() as f64;
+                values[cell] += flux / self.exiting.projected_solid_angle(cell);
+            }
+        }
+    }
+
+    fn add_lobes(&self, column: usize, values: &mut [f64], lobe: impl Fn(DVec2) -> Option<Lobe>) {
+        let middle = self.incident.point(column, [0.5, 0.5]);
+        let Some(spread) = lobe(middle).map(|l| l.spread) else { return };
+        let width = |columns: &Columns, cell: usize| columns.projected_solid_angle(cell).sqrt();
+        let exit = self.exiting.index(middle + DVec2::new(0.0, BESIDE));
+        let kernel = Kernel::new(spread, width(&self.exiting, exit));
+        let own = match self.incident {
+            Columns::Radial { side } => 2.0 / side as f64,
+            _ => width(&self.incident, column),
+        };
+        let n = (own / spread.sigma()).clamp(LOBE_POINTS[0], LOBE_POINTS[1]).ceil() as usize;
+        let points = self.points(column, n);
+        let share = 1.0 / points.len() as f64;
+        for p in points {
+            let Some(lobe) = lobe(p).filter(|l| l.flux > 0.0) else { continue };
+            // What would leave the hemisphere is spread over the rest.
+            let mut kept = 0.0;
+            kernel.around(p, |_, weight| kept += weight);
+            kernel.around(p, |q, weight| {
+                let cell = self.exiting.index(q);
+                values[cell] += share * lobe.flux * weight / kept / self.exiting.projected_solid_angle(cell);
+            });
+        }
+    }
+}
+
+fn midpoints(n: usize) -> impl Iterator<Item = f64> + Clone {
+    (0..n).map(move |i| (i as f64 + 0.5) / n as f64)
+}
+
+fn square(n: usize) -> impl Iterator<Item = [f64; 2]> {
+    midpoints(n).flat_map(move |u| midpoints(n).map(move |v| [u, v]))
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, n) = values.fold((0.0, 0.0), |(s, n), v| (s + v, n + 1.0));
+    if n > 0.0 { sum / n } else { 0.0 }
+}
