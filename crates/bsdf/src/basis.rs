@@ -115,9 +115,13 @@ impl AngleBasis {
     pub fn index(&self, p: DVec2) -> usize {
         let sin2 = p.length_squared();
         let ring = self.ring_at(sin2);
+        if ring.phi_count == 1 {
+            return ring.first;
+        }
         let turn = p.y.atan2(p.x) / (2.0 * PI);
-        let step = ((turn + 1.0) * ring.phi_count as f64 + 0.5).floor() as usize;
-        ring.first + step % ring.phi_count
+        // From half a turn to one and a half.
+        let step = ((turn + 1.0) * ring.phi_count as f64 + 0.5) as usize;
+        ring.first + if step < ring.phi_count { step } else { step - ring.phi_count }
     }
 
     /// The ring that holds sin²(theta).

@@ -45,13 +45,17 @@ impl Patches {
         self.sampled.len().div_ceil(self.run)
     }
 
-    fn flux(&self, column: usize, patch: usize) -> Rgb {
+    fn value(&self, column: usize, patch: usize) -> Rgb {
         let (incident, index) = if self.target.oriented.reversed {
             (patch, patch * self.fixed.len() + column)
         } else {
             (column, column * self.sampled.len() + patch)
         };
-        self.target.value(incident, index) * self.sampled.projected_solid_angle(patch)
+        self.target.value(incident, index)
+    }
+
+    fn flux(&self, column: usize, patch: usize) -> Rgb {
+        self.value(column, patch) * self.sampled.projected_solid_angle(patch)
     }
 
     /// The flux of each part of a column [-], with its block.
@@ -61,8 +65,8 @@ impl Patches {
         }
     }
 
-    /// A point of a block, in proportion to the values.
-    pub fn point(&self, column: usize, block: usize, [pick, u, v]: [f64; 3]) -> Option<DVec2> {
+    /// A point of a block, in proportion to the values, and its patch's value [1/sr].
+    pub fn point(&self, column: usize, block: usize, [pick, u, v]: [f64; 3]) -> Option<(DVec2, Option<Rgb>)> {
         let first = block * self.run;
         let patch = if self.run == 1 {
             first
@@ -73,6 +77,6 @@ impl Patches {
             }
             choice.taken()?
         };
-        Some(self.facing * self.sampled.point(patch, [u, v]))
+        Some((self.facing * self.sampled.point(patch, [u, v]), Some(self.value(column, patch))))
     }
 }
