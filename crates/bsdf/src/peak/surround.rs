@@ -9,9 +9,14 @@
 use crate::table::{Cell, Columns, Table};
 use glam::DVec2;
 use rayon::prelude::*;
+use sunpeak_core::warp::disk_to_square;
 
 /// How far the fit looks, in widths of the candidate cell.
 const REACH: f64 = 4.1;
+
+/// Least factor by which distances grow from the unit square to the disk: with r = a, phi = pi/4 b/a on the square of edge 2 the
+/// singular values' product is pi/4 and the sum of their squares at most 1 + pi²/8, so that the smaller one is at least 0.565.
+const LEAST_STRETCH: f64 = 2.0 * 0.565;
 
 /// Widest lobe [projected units]: wider ones look flat under any cell.
 const WIDEST: f64 = 1.0;
@@ -56,8 +61,8 @@ pub struct Neighbourhood {
     pub candidates: Vec<Cell>,
     around: Vec<Cell>,
     weights: Vec<f64>,
-    /// Squared distances of quadrature points with their weights, candidates first.
-    distances: Vec<Vec<(f64, f64)>>,
+    /// Points of the column with their weights.
+    incident: Vec<(DVec2, f64)>,
 }
 
 /// The surround of every candidate of every column, and the width of the lobe that it assumes.
@@ -70,7 +75,7 @@ pub fn estimate(
     let fits: Vec<Vec<ColumnFit>> = neighbourhoods
         .par_iter()
         .map(|n| {
-            let features = n.features(&widths);
+            let features = n.features(table, &widths);
             features.iter().map(|f| n.fit(channels[0], f)).collect()
         })
         .collect();
@@ -98,7 +103,7 @@ pub fn estimate(
                 (0..widths.len()).filter(|&k| shares[k] > 0.0).map(|k| shares[k] / total * of(k)).sum()
             };
             let plausible = |k: usize| misfit(k) <= PLAUSIBLE * (best + GOOD_ENOUGH);
-            let features = n.features(&widths);
+            let features = n.features(table, &widths);
             let estimates = channels
                 .iter()
                 .map(|values| {
@@ -164,47 +169,52 @@ impl Neighbourhood {
         }
         let straight = columns.point(column, [0.5, 0.5]);
         let width = candidates.iter().map(|c| cell_width(c.projected_solid_angle)).fold(0.0, f64::max);
-        let mut around = Vec::new();
-        let mut weights = Vec::new();
-        for cell in others {
-            let distance = (table.point(&cell, [0.5, 0.5]) - straight).length();
-            if distance <= REACH * width {
-                weights.push(1.0 / (1.0 + (distance / width).powi(2)));
-                around.push(cell);
-            }
+        let mut near = within(table, &others, straight, REACH * width);
+        if near.is_empty() {
+            // In bases whose patches are long and narrow all others may lie further away: then the nearest ones.
+            let all = within(table, &others, straight, f64::INFINITY);
+            let nearest = all.iter().map(|n| n.1).fold(f64::INFINITY, f64::min);
+            near = all.into_iter().filter(|n| n.1 <= nearest).collect();
         }
-        let rule: &[(f64, f64)] =
-            if matches!(table, Table::Matrix(_)) { &QUADRATURE_WIDE } else { &QUADRATURE };
-        let incident: Vec<(DVec2, f64)> =
-            product(rule).into_iter().map(|(u, w)| (columns.point(column, u), w)).collect();
-        let distances = candidates
+        let weights = near.iter().map(|(_, distance)| 1.0 / (1.0 + (distance / width).powi(2))).collect();
+        let around = near.into_iter().map(|(cell, _)| cell).collect();
+        let incident =
+            product(quadrature(table)).into_iter().map(|(u, w)| (columns.point(column, u), w)).collect();
+        Self { candidates, around, weights, incident }
+    }
+
+    /// The lobe of height 1 averaged over each cell, candidates first, for each width.
+    fn features(&self, table: &Table, widths: &[f64]) -> Vec<Vec<f64>> {
+        // Made anew each time: kept for all columns they would take more memory than the table.
+        let squared_distances: Vec<Vec<(f64, f64)>> = self
+            .candidates
             .iter()
-            .chain(&around)
+            .chain(&self.around)
             .map(|cell| {
-                let exits = product(rule).into_iter().map(|(u, w)| (table.point(cell, u), w));
+                let exits = product(quadrature(table)).into_iter().map(|(u, w)| (table.point(cell, u), w));
                 exits
                     .flat_map(|(out, w)| {
-                        incident.iter().map(move |(p, v)| ((out - *p).length_squared(), w * v))
+                        self.incident.iter().map(move |(p, v)| ((out - *p).length_squared(), w * v))
                     })
                     .collect()
             })
             .collect();
-        Self { candidates, around, weights, distances }
-    }
-
-    /// The lobe of height 1 averaged over each cell, for each width.
-    fn features(&self, widths: &[f64]) -> Vec<Vec<f64>> {
         widths
             .iter()
             .map(|s| {
                 let k = -0.5 / (s * s);
-                self.distances.iter().map(|d| d.iter().map(|(d2, w)| w * (k * d2).exp()).sum()).collect()
+                squared_distances.iter().map(|d| d.iter().map(|(d2, w)| w * (k * d2).exp()).sum()).collect()
             })
             .collect()
     }
 
     /// Least squares for base and height, neither negative.
     fn fit(&self, values: &[f32], features: &[f64]) -> ColumnFit {
+        if self.around.is_empty() {
+            // One cell is all there is: nothing tells a peak from a smooth table, so it is smooth.
+            let candidates = self.candidates.iter().map(|c| (f64::from(values[c.index]), 0.0)).collect();
+            return ColumnFit { misfit: None, variance_ratio: 0.0, candidates };
+        }
         let (at_candidates, at_others) = features.split_at(self.candidates.len());
         let mut m = [0.0; 6]; // sums of w, wg, wgg, wy, wgy, wyy
         for ((cell, &w), &g) in self.around.iter().zip(&self.weights).zip(at_others) {
@@ -252,6 +262,26 @@ impl Neighbourhood {
             .collect();
         ColumnFit { misfit: Some(square / wyy), variance_ratio: square / wy, candidates }
     }
+}
+
+fn quadrature(table: &Table) -> &'static [(f64, f64)] {
+    if matches!(table, Table::Matrix(_)) { &QUADRATURE_WIDE } else { &QUADRATURE }
+}
+
+/// The cells whose middles lie within `reach` of a point, with their distances from it.
+fn within(table: &Table, cells: &[Cell], point: DVec2, reach: f64) -> Vec<(Cell, f64)> {
+    // On the square a cell that is too far away is told without mapping it to the disk.
+    let at = disk_to_square(point.into());
+    let furthest = reach / LEAST_STRETCH;
+    let may_be_near = |cell: &&Cell| {
+        cell.square().is_none_or(|square| {
+            let middle = |k: usize| f64::from(square.corner[k]) + 0.5 * f64::from(square.size);
+            [0, 1].iter().all(|&k| (middle(k) - at[k]).abs() <= furthest)
+        })
+    };
+    let distance = |cell: &Cell| (table.point(cell, [0.5, 0.5]) - point).length();
+    let near = cells.iter().filter(may_be_near).map(|cell| (*cell, distance(cell)));
+    near.filter(|(_, distance)| *distance <= reach).collect()
 }
 
 fn product(rule: &[(f64, f64)]) -> Vec<([f64; 2], f64)> {
