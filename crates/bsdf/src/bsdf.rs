@@ -237,6 +237,7 @@ impl Bsdf {
         chosen * lobe.proposal.density(p_in, lobe.column, p_out, value) * w_out.z.abs()
     }
 
+    #[inline]
     fn met(&self, w_in: Vec3, mode: Mode, rule: PeakRule) -> Option<Met<'_>> {
         let lobe = self.lobe(w_in, mode)?;
         let proposal = lobe.proposal(rule);
@@ -245,13 +246,14 @@ impl Bsdf {
 
     /// Reflection and transmission.
     fn lobes_met(&self, w_in: Vec3, rule: PeakRule) -> [Option<Met<'_>>; 2] {
-        [Mode::Reflection, Mode::Transmission].map(|mode| self.met(w_in, mode, rule))
+        [self.met(w_in, Mode::Reflection, rule), self.met(w_in, Mode::Transmission, rule)]
     }
 }
 
 /// Probability that a sample is a reflection; `None` if nothing is scattered.
 fn reflected_share(lobes: &[Option<Met>; 2]) -> Option<f64> {
-    let [r, t] = [0, 1].map(|k| lobes[k].as_ref().map_or(0.0, Met::luminous));
+    let luminous = |lobe: &Option<Met>| lobe.as_ref().map_or(0.0, Met::luminous);
+    let (r, t) = (luminous(&lobes[0]), luminous(&lobes[1]));
     (r + t > 0.0).then(|| r / (r + t))
 }
 

@@ -4,7 +4,7 @@
 const ONE: f64 = u32::MAX as f64;
 
 /// Blocks for one entry of the guide: with it the search takes the same few steps in every column.
-const BLOCKS_AN_ENTRY: usize = 8;
+const BLOCKS_AN_ENTRY: usize = 4;
 
 /// For each column the upper ends of its blocks' shares of one.
 ///
@@ -51,18 +51,22 @@ impl Shares {
         &self.ends[column * self.blocks..(column + 1) * self.blocks]
     }
 
-    /// The block in whose share `u` in [0, 1) falls, and how far into it [0, 1). A block without a share is never picked.
-    pub fn pick(&self, column: usize, u: f64) -> (usize, f64) {
+    /// The block in whose share `u` in [0, 1) falls. A block without a share is never picked.
+    #[inline]
+    pub fn pick(&self, column: usize, u: f64) -> usize {
         let ends = self.of_column(column);
-        let at = u * ONE;
-        let whole = at as u32; // ends are whole numbers: end <= at where end <= whole
+        let whole = (u * ONE) as u32; // ends are whole numbers: end <= u where end <= whole
         let part = ((u64::from(whole) * self.parts as u64) >> 32) as usize;
         let guide = &self.guide[column * self.parts..(column + 1) * self.parts];
         let first = guide[part] as usize;
         let last = guide.get(part + 1).map_or(ends.len(), |&block| block as usize);
-        let block = (first + ends[first..last].partition_point(|&end| end <= whole)).min(ends.len() - 1);
+        (first + ends[first..last].partition_point(|&end| end <= whole)).min(ends.len() - 1)
+    }
+
+    /// How far into the share of its block `u` is [0, 1).
+    pub fn rest(&self, column: usize, block: usize, u: f64) -> f64 {
         let (below, end) = self.bounds(column, block);
-        (block, ((at - below) / (end - below)).clamp(0.0, 1.0 - f64::EPSILON))
+        ((u * ONE - below) / (end - below)).clamp(0.0, 1.0 - f64::EPSILON)
     }
 
     fn bounds(&self, column: usize, block: usize) -> (f64, f64) {
@@ -87,11 +91,10 @@ mod tests {
         let weights = [0.0, 3.0, 0.0, 1.0, 0.0, 0.0];
         let shares = Shares::new(6, [vec![0; 6], Shares::ends(&weights)]);
         for (u, block, rest) in [(0.0, 1, 0.0), (0.375, 1, 0.5), (0.75, 3, 0.0), (0.875, 3, 0.5)] {
-            let (got, within) = shares.pick(1, u + 1e-9);
-            assert_eq!(got, block);
-            assert!((within - rest).abs() < 1e-8);
+            assert_eq!(shares.pick(1, u + 1e-9), block);
+            assert!((shares.rest(1, block, u + 1e-9) - rest).abs() < 1e-8);
         }
-        assert_eq!(shares.pick(1, 1.0 - f64::EPSILON).0, 3);
+        assert_eq!(shares.pick(1, 1.0 - f64::EPSILON), 3);
         assert!((shares.share(1, 1) - 0.75).abs() < 1e-9);
         assert_eq!(shares.share(1, 2), 0.0);
     }
@@ -107,7 +110,7 @@ mod tests {
             for at in edges.chain((0..1000).map(|i| ONE * f64::from(i) / 1000.0)) {
                 let u = (at / ONE).clamp(0.0, 1.0 - f64::EPSILON);
                 let plain = ends.iter().position(|&end| f64::from(end) > u * ONE);
-                assert_eq!(shares.pick(0, u).0, plain.unwrap_or(blocks - 1), "{u} of {blocks}");
+                assert_eq!(shares.pick(0, u), plain.unwrap_or(blocks - 1), "{u} of {blocks}");
             }
         }
     }
