@@ -75,8 +75,8 @@ pub fn estimate(
     let fits: Vec<Vec<ColumnFit>> = neighbourhoods
         .par_iter()
         .map(|n| {
-            let features = n.features(table, &widths);
-            features.iter().map(|f| n.fit(channels[0], f)).collect()
+            let distances = n.squared_distances(table);
+            widths.iter().map(|&s| n.fit(channels[0], &lobe_averages(&distances, s))).collect()
         })
         .collect();
     let table_misfit: Vec<f64> = (0..widths.len())
@@ -103,19 +103,27 @@ pub fn estimate(
                 (0..widths.len()).filter(|&k| shares[k] > 0.0).map(|k| shares[k] / total * of(k)).sum()
             };
             let plausible = |k: usize| misfit(k) <= PLAUSIBLE * (best + GOOD_ENOUGH);
-            let features = n.features(table, &widths);
+            let distances = n.squared_distances(table);
+            let features: Vec<Option<Vec<f64>>> = (0..widths.len())
+                .map(|k| {
+                    let counts = shares[k] > 0.0 || plausible(k);
+                    counts.then(|| lobe_averages(&distances, widths[k]))
+                })
+                .collect();
             let estimates = channels
                 .iter()
                 .map(|values| {
-                    let fits: Vec<_> = features.iter().map(|f| n.fit(values, f)).collect();
+                    let fits: Vec<_> =
+                        features.iter().map(|f| f.as_ref().map(|f| n.fit(values, f))).collect();
+                    let of = |k: usize, what: &dyn Fn(&ColumnFit) -> f64| fits[k].as_ref().map_or(0.0, what);
                     (0..n.candidates.len())
                         .map(|c| {
-                            let value = |k: usize| fits[k].candidates[c].0;
+                            let value = |k: usize| of(k, &|fit| fit.candidates[c].0);
                             let possible = (0..widths.len()).filter(|&k| plausible(k)).map(value);
                             Estimate {
                                 value: average(&value),
-                                error: average(&|k| fits[k].candidates[c].1),
-                                variance_ratio: average(&|k| fits[k].variance_ratio),
+                                error: average(&|k| of(k, &|fit| fit.candidates[c].1)),
+                                variance_ratio: average(&|k| of(k, &|fit| fit.variance_ratio)),
                                 range: [
                                     possible.clone().fold(f64::INFINITY, f64::min),
                                     possible.fold(0.0, f64::max),
@@ -183,13 +191,11 @@ impl Neighbourhood {
         Self { candidates, around, weights, incident }
     }
 
-    /// The lobe of height 1 averaged over each cell, candidates first, for each width.
-    fn features(&self, table: &Table, widths: &[f64]) -> Vec<Vec<f64>> {
-        // Made anew each time: kept for all columns they would take more memory than the table.
-        let squared_distances: Vec<Vec<(f64, f64)>> = self
-            .candidates
-            .iter()
-            .chain(&self.around)
+    /// Squared distances of quadrature points with their weights, candidates first. Made anew each time: kept for all columns they
+    /// would take more memory than the table.
+    fn squared_distances(&self, table: &Table) -> Vec<Vec<(f64, f64)>> {
+        let cells = self.candidates.iter().chain(&self.around);
+        cells
             .map(|cell| {
                 let exits = product(quadrature(table)).into_iter().map(|(u, w)| (table.point(cell, u), w));
                 exits
@@ -197,13 +203,6 @@ impl Neighbourhood {
                         self.incident.iter().map(move |(p, v)| ((out - *p).length_squared(), w * v))
                     })
                     .collect()
-            })
-            .collect();
-        widths
-            .iter()
-            .map(|s| {
-                let k = -0.5 / (s * s);
-                squared_distances.iter().map(|d| d.iter().map(|(d2, w)| w * (k * d2).exp()).sum()).collect()
             })
             .collect()
     }
@@ -262,6 +261,12 @@ impl Neighbourhood {
             .collect();
         ColumnFit { misfit: Some(square / wyy), variance_ratio: square / wy, candidates }
     }
+}
+
+/// The lobe of height 1 and a width, averaged over each cell.
+fn lobe_averages(squared_distances: &[Vec<(f64, f64)>], width: f64) -> Vec<f64> {
+    let k = -0.5 / (width * width);
+    squared_distances.iter().map(|d| d.iter().map(|(d2, w)| w * (k * d2).exp()).sum()).collect()
 }
 
 fn quadrature(table: &Table) -> &'static [(f64, f64)] {
