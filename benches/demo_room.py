@@ -1,13 +1,14 @@
-"""Samples per second of the demo's room, on all cores and on one.
+"""Samples per second of the demo's room with peak extraction, on all cores and on one; beside it the same without.
 
-usage: python benches/demo_room.py        (prints one JSON object a line)
+usage: python benches/demo_room.py
 """
 
-import json
 import os
 import tempfile
 import time
 from pathlib import Path
+
+from table import heading, row
 
 import sunpeak as sp
 from sunpeak.demo.study import write_scene, write_shade
@@ -17,23 +18,25 @@ SIZE = (256, 256)
 SAMPLES = 8
 
 
-def main() -> None:
+def samples_per_second(world: sp.World, eye: sp.View, threads: int) -> float:
     """Render the demo's fisheye and count."""
+    start = time.perf_counter()
+    sp.render(world, eye, SIZE, samples=SAMPLES, threads=threads)
+    return SIZE[0] * SIZE[1] * SAMPLES / (time.perf_counter() - start)
+
+
+def main() -> None:
+    """Compile the room twice and render it in turn."""
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         files = write_scene(folder)
         scene = sp.Scene.load([*files, write_shade(folder, BASIS)])
         eye = sp.View.load(folder / "eye.vf")
-        for peak in ("off", "split"):
-            start = time.perf_counter()
-            world = sp.World.compile(scene, peak)
-            compile_s = time.perf_counter() - start
-            for threads in (1, os.cpu_count() or 1):
-                start = time.perf_counter()
-                sp.render(world, eye, SIZE, samples=SAMPLES, threads=threads)
-                rate = SIZE[0] * SIZE[1] * SAMPLES / (time.perf_counter() - start)
-                row = {"room": f"demo, {BASIS}", "peak": peak, "threads": threads, "samples_per_s": round(rate)}
-                print(json.dumps(row | {"compile_s": round(compile_s, 2)}))
+        split, off = (sp.World.compile(scene, peak) for peak in ("split", "off"))
+        heading(f"demo's room, {BASIS}", "samples/s", "without peak extraction")
+        for threads in sorted({1, os.cpu_count() or 1}):
+            ours, theirs = (samples_per_second(world, eye, threads) for world in (split, off))
+            row(f"threads: {threads}", ours, theirs, higher_is_better=True)
 
 
 if __name__ == "__main__":

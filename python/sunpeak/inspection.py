@@ -1,7 +1,7 @@
 """What is in a BSDF file, whether it is sound, and whether peak extraction will fire: the report of `bsdf info`."""
 
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -66,9 +66,9 @@ class Inspection:
         return {"fires": False, "use": NOTHING.use, "verdict": NOTHING.text}
 
 
-def inspect(file: str) -> Inspection:
-    """Read a file and look at it from both sides."""
-    bsdf = Bsdf.load(file)
+def inspect(file: str, instrument_fwhm_deg: float | Literal["find"] | None = None) -> Inspection:
+    """Read a file and look at it from both sides; for measured data see `Bsdf.load`."""
+    bsdf = Bsdf.load(file, instrument_fwhm_deg=instrument_fwhm_deg)
     looks = [look for side in SIDES for look in looks_at(bsdf, side)]
     return Inspection(file, bsdf.describe(), looks, bsdf.peak_report())
 

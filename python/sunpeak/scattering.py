@@ -71,6 +71,8 @@ class Component(TypedDict):
     colour: bool
     by_reciprocity: bool
     has_peak: bool
+    instrument_fwhm_deg: float | None
+    """The instrument's blur that was taken for the peak; none for a delta."""
 
 
 class Description(TypedDict):
@@ -91,15 +93,25 @@ class Bsdf:
         self._core = core
 
     @classmethod
-    def load(cls, path: str | PathLike[str]) -> "Bsdf":
+    def load(
+        cls, path: str | PathLike[str], *, instrument_fwhm_deg: float | Literal["find"] | None = None
+    ) -> "Bsdf":
         """Read an LBNL XML file: Klems or another basis that the file defines, or a tensor tree.
 
         A folder (or the `peak.json` in it) is read as a split that `save_split` wrote.
 
+        `instrument_fwhm_deg` is for measured data whose peak an instrument has widened: the full width at half maximum
+        of what it makes of a sharp beam, 0.05 to 20 degrees, or `"find"` to look for it (a lobe of constant angular
+        width that follows the straight direction). The split then takes the whole blurred lobe.
+
         Raises `InputError` with file, line and column where the file is not sound, `OSError` where it cannot be
         read.
         """
-        return cls(_core.Bsdf.load(path))
+        if instrument_fwhm_deg == "find":
+            return cls(_core.Bsdf.load(path, None, True))
+        if isinstance(instrument_fwhm_deg, str):
+            raise _core.InputError(f"instrument_fwhm_deg: {instrument_fwhm_deg!r}; expected degrees or 'find'")
+        return cls(_core.Bsdf.load(path, instrument_fwhm_deg))
 
     def evaluate(
         self,

@@ -112,12 +112,17 @@ impl AngleBasis {
     }
 
     /// The patch that holds the point `p` = (x, y) of the unit disk.
+    #[inline]
     pub fn index(&self, p: DVec2) -> usize {
         let sin2 = p.length_squared();
         let ring = self.ring_at(sin2);
+        if ring.phi_count == 1 {
+            return ring.first;
+        }
         let turn = p.y.atan2(p.x) / (2.0 * PI);
-        let step = ((turn + 1.0) * ring.phi_count as f64 + 0.5).floor() as usize;
-        ring.first + step % ring.phi_count
+        // From half a turn to one and a half.
+        let step = ((turn + 1.0) * ring.phi_count as f64 + 0.5) as usize;
+        ring.first + if step < ring.phi_count { step } else { step - ring.phi_count }
     }
 
     /// The ring that holds sin²(theta).
@@ -165,17 +170,24 @@ impl AngleBasis {
     }
 
     /// A point of a patch in the unit disk, uniform in projected solid angle for uniform `u`; its middle at (0.5, 0.5).
+    #[inline]
     pub fn point(&self, patch: usize, u: [f64; 2]) -> DVec2 {
-        let (ring, step) = self.ring_of(patch);
-        if ring.phi_count == 1 {
-            return DVec2::from(square_to_disk(u)) * ring.upper_sin2.sqrt(); // the pole: a disk, not a ring
-        }
-        let phi = 2.0 * PI * (step as f64 + u[1] - 0.5) / ring.phi_count as f64;
-        DVec2::from_angle(phi) * ring.sin2(u[0]).sqrt()
+        self.ring_of(patch).0.point(patch, u)
     }
 }
 
 impl Ring {
+    /// [`AngleBasis::point`] of a patch of this ring.
+    #[inline]
+    pub fn point(&self, patch: usize, u: [f64; 2]) -> DVec2 {
+        if self.phi_count == 1 {
+            return DVec2::from(square_to_disk(u)) * self.upper_sin2.sqrt(); // the pole: a disk, not a ring
+        }
+        let step = (patch - self.first) as f64;
+        let phi = 2.0 * PI * (step + u[1] - 0.5) / self.phi_count as f64;
+        DVec2::from_angle(phi) * self.sin2(u[0]).sqrt()
+    }
+
     /// Index of the ring's first patch.
     pub fn first(&self) -> usize {
         self.first

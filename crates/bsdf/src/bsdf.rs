@@ -54,6 +54,7 @@ pub struct Bsdf {
 #[derive(Debug)]
 struct Lobe {
     oriented: Oriented,
+    has_peak: bool,
     whole: OnceLock<Proposal>,
     residual: OnceLock<Proposal>,
 }
@@ -61,16 +62,34 @@ struct Lobe {
 impl Lobe {
     fn new(distribution: &Arc<Distribution>, reversed: bool) -> Self {
         let oriented = Oriented { distribution: distribution.clone(), reversed };
-        Self { oriented, whole: OnceLock::new(), residual: OnceLock::new() }
+        let has_peak = distribution.split().has_peak();
+        Self { oriented, has_peak, whole: OnceLock::new(), residual: OnceLock::new() }
     }
 
     fn proposal(&self, rule: PeakRule) -> &Proposal {
         // A table without a peak is its own residual.
-        if rule == PeakRule::Split && self.oriented.distribution.split().has_peak() {
+        if rule == PeakRule::Split && self.has_peak {
             self.residual.get_or_init(|| Proposal::new(&self.oriented, true))
         } else {
             self.whole.get_or_init(|| Proposal::new(&self.oriented, false))
         }
+    }
+}
+
+/// A lobe as rays from one direction meet it.
+struct Met<'a> {
+    oriented: &'a Oriented,
+    proposal: &'a Proposal,
+    column: usize,
+}
+
+impl Met<'_> {
+    fn hemispherical(&self) -> Rgb {
+        self.proposal.hemispherical(self.column)
+    }
+
+    fn luminous(&self) -> f64 {
+        self.proposal.luminous(self.column)
     }
 }
 
@@ -178,26 +197,25 @@ impl Bsdf {
 
     /// Hemispherical reflectance or transmittance [-] of what [`Self::evaluate_smooth`] gives.
     pub fn hemispherical_smooth(&self, w_in: Vec3, mode: Mode, rule: PeakRule) -> Rgb {
-        self.lobe(w_in, mode).map_or(Rgb::ZERO, |l| l.proposal(rule).hemispherical(incident_point(w_in)))
+        self.met(w_in, mode, rule).map_or(Rgb::ZERO, |lobe| lobe.hemispherical())
     }
 
     /// Sample the smooth part, reflection and transmission together, in proportion to luminous f |cos|; `None` if there is
     /// nothing to sample. `u` is uniform in the unit cube.
     pub fn sample_smooth(&self, w_in: Vec3, u: [f64; 3], rule: PeakRule) -> Option<Sample> {
-        let share = self.reflected_share(w_in, rule)?;
+        let lobes = self.lobes_met(w_in, rule);
+        let share = reflected_share(&lobes)?;
         let reflect = u[0] < share;
-        let (mode, first) = if reflect {
-            (Mode::Reflection, u[0] / share)
+        let (lobe, chosen, first) = if reflect {
+            (&lobes[0], share, u[0] / share)
         } else {
-            (Mode::Transmission, (u[0] - share) / (1.0 - share))
+            (&lobes[1], 1.0 - share, (u[0] - share) / (1.0 - share))
         };
-        let lobe = self.lobe(w_in, mode)?;
-        let p_in = incident_point(w_in);
-        let sampled = lobe.proposal(rule).sample(p_in, [first, u[1], u[2]])?;
+        let lobe = lobe.as_ref()?;
+        let sampled = lobe.proposal.sample(incident_point(w_in), lobe.column, [first, u[1], u[2]])?;
         let height = (1.0 - sampled.p_out.length_squared()).max(0.0).sqrt();
         let above = (w_in.z > 0.0) == reflect;
         let w_out = sampled.p_out.extend(if above { height } else { -height });
-        let chosen = if reflect { share } else { 1.0 - share };
         let pdf = sampled.density * chosen * height;
         if pdf <= 0.0 {
             return None;
@@ -207,22 +225,36 @@ impl Bsdf {
 
     /// Density [1/sr] of [`Self::sample_smooth`].
     pub fn pdf_smooth(&self, w_in: Vec3, w_out: Vec3, rule: PeakRule) -> f64 {
-        let mode = mode(w_in, w_out);
-        let (Some(share), Some(lobe)) = (self.reflected_share(w_in, rule), self.lobe(w_in, mode)) else {
-            return 0.0;
+        let lobes = self.lobes_met(w_in, rule);
+        let Some(share) = reflected_share(&lobes) else { return 0.0 };
+        let (lobe, chosen) = match mode(w_in, w_out) {
+            Mode::Reflection => (&lobes[0], share),
+            Mode::Transmission => (&lobes[1], 1.0 - share),
         };
+        let Some(lobe) = lobe else { return 0.0 };
         let (p_in, p_out) = (incident_point(w_in), exiting_point(w_out));
-        let chosen = if mode == Mode::Reflection { share } else { 1.0 - share };
         let value = luminance(lobe.oriented.value(p_in, p_out, rule == PeakRule::Split));
-        chosen * lobe.proposal(rule).density(p_in, p_out, value) * w_out.z.abs()
+        chosen * lobe.proposal.density(p_in, lobe.column, p_out, value) * w_out.z.abs()
     }
 
-    /// Probability that a sample is a reflection; `None` if nothing is scattered.
-    fn reflected_share(&self, w_in: Vec3, rule: PeakRule) -> Option<f64> {
-        let r = luminance(self.hemispherical_smooth(w_in, Mode::Reflection, rule));
-        let t = luminance(self.hemispherical_smooth(w_in, Mode::Transmission, rule));
-        (r + t > 0.0).then(|| r / (r + t))
+    #[inline]
+    fn met(&self, w_in: Vec3, mode: Mode, rule: PeakRule) -> Option<Met<'_>> {
+        let lobe = self.lobe(w_in, mode)?;
+        let proposal = lobe.proposal(rule);
+        Some(Met { oriented: &lobe.oriented, proposal, column: proposal.column(incident_point(w_in)) })
     }
+
+    /// Reflection and transmission.
+    fn lobes_met(&self, w_in: Vec3, rule: PeakRule) -> [Option<Met<'_>>; 2] {
+        [self.met(w_in, Mode::Reflection, rule), self.met(w_in, Mode::Transmission, rule)]
+    }
+}
+
+/// Probability that a sample is a reflection; `None` if nothing is scattered.
+fn reflected_share(lobes: &[Option<Met>; 2]) -> Option<f64> {
+    let luminous = |lobe: &Option<Met>| lobe.as_ref().map_or(0.0, Met::luminous);
+    let (r, t) = (luminous(&lobes[0]), luminous(&lobes[1]));
+    (r + t > 0.0).then(|| r / (r + t))
 }
 
 fn mode(w_in: Vec3, w_out: Vec3) -> Mode {

@@ -4,6 +4,7 @@ use crate::{
     bsdf::{Bsdf, Sides},
     cache::{Cache, Contents, Slot},
     distribution::Distribution,
+    peak::Instrument,
     table::Table,
     xml::{self, Block, Document},
 };
@@ -29,10 +30,7 @@ impl Bsdf {
         let contents = match slot.as_ref().and_then(Slot::get) {
             Some(contents) => contents,
             None => {
-                let file = File::open(path).map_err(|e| Error::io(path, e))?;
-                let name = path.to_string_lossy();
-                let document = xml::read(&name, BufReader::with_capacity(BUFFER, file))?;
-                let contents = split(&name, document)?;
+                let contents = split(&path.to_string_lossy(), read(path)?, Instrument::None)?;
                 slot.iter().for_each(|slot| slot.put(&contents));
                 contents
             }
@@ -40,19 +38,39 @@ impl Bsdf {
         Ok(Self::from_sides(contents.document, contents.sides))
     }
 
+    /// As [`Self::load`], of a file whose peak an instrument has widened. It is not kept in the cache.
+    pub fn load_measured(path: &Path, instrument: Instrument) -> Result<Self> {
+        instrument.check()?;
+        if instrument == Instrument::None {
+            return Self::load(path);
+        }
+        let name = path.to_string_lossy();
+        if Self::is_split(path) {
+            let message = "it is split already, and has the instrument's width in it; expected the XML file";
+            return Err(Error::input(Location::new(&*name, 0, 0), message));
+        }
+        let contents = split(&name, read(path)?, instrument)?;
+        Ok(Self::from_sides(contents.document, contents.sides))
+    }
+
     /// Read the text of an LBNL XML file and split it; `file` names it in messages.
     pub fn parse(file: &str, text: &[u8]) -> Result<Self> {
-        let contents = split(file, xml::parse(file, text)?)?;
+        let contents = split(file, xml::parse(file, text)?, Instrument::None)?;
         Ok(Self::from_sides(contents.document, contents.sides))
     }
 }
 
-fn split(file: &str, mut document: Document) -> Result<Contents> {
+fn read(path: &Path) -> Result<Document> {
+    let file = File::open(path).map_err(|e| Error::io(path, e))?;
+    xml::read(&path.to_string_lossy(), BufReader::with_capacity(BUFFER, file))
+}
+
+fn split(file: &str, mut document: Document, instrument: Instrument) -> Result<Contents> {
     let blocks = std::mem::take(&mut document.blocks);
     let sides = sides_of(file, blocks, &|direction, table, color| {
         let transmission = direction.starts_with("Transmission");
         Ok(if transmission {
-            Distribution::with_split(table, color)
+            Distribution::with_split_of(table, color, instrument)
         } else {
             Distribution::new(table, color)
         })

@@ -1,8 +1,9 @@
 //! Sampling a table: for each column a cumulative distribution over blocks of its cells, and within a block a search.
 //!
-//! Cells and values are the table's own, and what is stored beside it does not grow with it: shares of blocks, at most a quarter
-//! byte a value past a megabyte. Sampling is exactly in proportion to value times projected solid angle, along the table and, where
-//! it serves by reciprocity, against it; only an isotropic tree against its direction has a proposal made of point samples.
+//! Cells and values are the table's own, and what is stored beside it does not grow with it: shares of blocks and their guide, at
+//! most a third of a byte a value past 1.3 megabytes. Sampling is exactly in proportion to value times projected solid angle, along
+//! the table and, where it serves by reciprocity, against it; only an isotropic tree against its direction has a proposal made of
+//! point samples.
 
 mod leaves;
 mod patches;
@@ -109,8 +110,9 @@ pub struct Proposal {
     target: Target,
     cells: Cells,
     shares: Shares,
-    /// Hemispherical value [-] of each column.
+    /// Hemispherical value [-] of each column, and the luminous one.
     hemispherical: Vec<Rgb>,
+    luminous: Vec<f64>,
 }
 
 #[derive(Debug)]
@@ -144,45 +146,55 @@ impl Proposal {
         let (ends, hemispherical): (Vec<_>, Vec<_>) =
             (0..cells.columns()).into_par_iter().map(|column| cells.sums(column)).unzip();
         let shares = Shares::new(cells.blocks(), ends);
-        Self { target, cells, shares, hemispherical }
+        let luminous = hemispherical.iter().map(|&h| luminance(h)).collect();
+        Self { target, cells, shares, hemispherical, luminous }
     }
 
-    /// Hemispherical reflectance or transmittance [-].
-    pub fn hemispherical(&self, p_in: DVec2) -> Rgb {
-        self.hemispherical[self.cells.column(p_in)]
+    /// The column of an incident point: what the other questions are asked with.
+    pub fn column(&self, p_in: DVec2) -> usize {
+        self.cells.column(p_in)
     }
 
-    /// Sample the exiting point; `None` if nothing exits. `u` is uniform in the unit cube.
-    pub fn sample(&self, p_in: DVec2, u: [f64; 3]) -> Option<Sampled> {
-        let column = self.cells.column(p_in);
-        let total = luminance(self.hemispherical[column]);
+    /// Hemispherical reflectance or transmittance [-] of a column.
+    pub fn hemispherical(&self, column: usize) -> Rgb {
+        self.hemispherical[column]
+    }
+
+    /// Luminous hemispherical value [-] of a column.
+    pub fn luminous(&self, column: usize) -> f64 {
+        self.luminous[column]
+    }
+
+    /// Sample the exiting point for an incident point and its column; `None` if nothing exits. `u` is uniform in the unit cube.
+    #[inline]
+    pub fn sample(&self, p_in: DVec2, column: usize, u: [f64; 3]) -> Option<Sampled> {
+        let total = self.luminous[column];
         if total <= 0.0 {
             return None;
         }
-        let within = |u: [f64; 3]| {
-            let (block, rest) = self.shares.pick(column, u[0]);
-            (block, [rest, u[1], u[2]])
-        };
-        let p_out = match &self.cells {
+        let (p_out, value) = match &self.cells {
             Cells::Patches(patches) => {
-                let (block, u) = within(u);
-                patches.point(column, block, u)?
+                let block = self.shares.pick(column, u[0]);
+                let rest = || self.shares.rest(column, block, u[0]);
+                patches.point(column, block, rest, [u[1], u[2]])?
             }
             Cells::Leaves(leaves) => {
-                let (block, u) = within(u);
-                leaves.point(p_in, column, block, u)?
+                let block = self.shares.pick(column, u[0]);
+                let rest = self.shares.rest(column, block, u[0]);
+                leaves.point(p_in, column, block, [rest, u[1], u[2]])?
             }
-            Cells::Points(points) => points.point(&self.shares, p_in, column, u),
+            Cells::Points(points) => (points.point(&self.shares, p_in, column, u), None),
         };
-        let value = self.target.oriented.value(p_in, p_out, self.target.residual);
-        let density = self.density_in(column, total, p_in, p_out, luminance(value));
+        let known = value.is_some();
+        let value = value.unwrap_or_else(|| self.target.oriented.value(p_in, p_out, self.target.residual));
+        let y = luminance(value);
+        let density = if known { y / total } else { self.density_in(column, total, p_in, p_out, y) };
         (density > 0.0).then_some(Sampled { p_out, density, value })
     }
 
     /// Density in projected solid angle [1/sr] of a sample at `p_out`, where the luminous value is `value` [1/sr].
-    pub fn density(&self, p_in: DVec2, p_out: DVec2, value: f64) -> f64 {
-        let column = self.cells.column(p_in);
-        let total = luminance(self.hemispherical[column]);
+    pub fn density(&self, p_in: DVec2, column: usize, p_out: DVec2, value: f64) -> f64 {
+        let total = self.luminous[column];
         if total > 0.0 { self.density_in(column, total, p_in, p_out, value) } else { 0.0 }
     }
 

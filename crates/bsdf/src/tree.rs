@@ -179,43 +179,70 @@ impl Tree {
         bounds: &[(f64, f64); 4],
         visit: &mut impl FnMut(&Leaf),
     ) {
-        let side = match self.nodes[node] {
-            Node::Branch(_) => 2,
-            Node::Grid { log2, .. } => 1usize << log2,
+        let (node, corner, size) = self.narrowest(node, corner, size, bounds);
+        let log2 = match self.nodes[node] {
+            Node::Branch(_) => 1,
+            Node::Grid { log2, .. } => log2,
         };
-        let step = size / side as f64;
+        let side = 1usize << log2;
+        // Sizes are powers of two, so that this is exact.
+        let (step, per_step) = (size / side as f64, side as f64 / size);
         let range = |d: usize| {
             if d >= self.rank {
                 return 0..1;
             }
             let (low, high) = bounds[d];
-            let first = (((low - corner[d]) / step).max(0.0) as usize).min(side - 1);
-            let end = if high > low { ((high - corner[d]) / step).ceil().max(0.0) as usize } else { 0 };
+            let first = (((low - corner[d]) * per_step) as usize).min(side - 1);
+            let end = if high > low { ceil((high - corner[d]) * per_step) } else { 0 };
             first..end.clamp(first + 1, side)
         };
-        for a in range(0) {
-            for b in range(1) {
-                for c in range(2) {
-                    for d in range(3) {
+        let ranges = [0, 1, 2, 3].map(range);
+        let at = |d: usize, k: usize| corner[d] + k as f64 * step;
+        for a in ranges[0].clone() {
+            for b in ranges[1].clone() {
+                for c in ranges[2].clone() {
+                    for d in ranges[3].clone() {
                         let cell = [a, b, c, d];
-                        let mut at = corner;
-                        for (x, &k) in at.iter_mut().zip(&cell).take(self.rank) {
-                            *x += k as f64 * step;
-                        }
+                        let corner = [at(0, a), at(1, b), at(2, c), at(3, d)];
                         match self.nodes[node] {
-                            Node::Grid { log2, first } => {
+                            Node::Grid { first, .. } => {
                                 let offset = cell[..self.rank].iter().fold(0, |n, &k| (n << log2) | k);
-                                visit(&Leaf { index: first as usize + offset, corner: at, size: step });
+                                visit(&Leaf { index: first as usize + offset, corner, size: step });
                             }
                             Node::Branch(first) => {
                                 let child = (0..self.rank).fold(0, |n, i| n | (cell[i] << i));
-                                self.visit(first as usize + child, at, step, bounds, visit);
+                                self.visit(first as usize + child, corner, step, bounds, visit);
                             }
                         }
                     }
                 }
             }
         }
+    }
+
+    /// The last node on the way down from one that still holds all of the bounds.
+    fn narrowest(
+        &self,
+        mut node: usize,
+        mut corner: [f64; 4],
+        mut size: f64,
+        bounds: &[(f64, f64); 4],
+    ) -> (usize, [f64; 4], f64) {
+        while let Node::Branch(first) = self.nodes[node] {
+            let half = 0.5 * size;
+            let (mut child, mut inner) = (0, corner);
+            for d in 0..self.rank {
+                let (middle, (low, high)) = (corner[d] + half, bounds[d]);
+                if low >= middle {
+                    child |= 1 << d;
+                    inner[d] = middle;
+                } else if high > middle {
+                    return (node, corner, size);
+                }
+            }
+            (node, corner, size) = (first as usize + child, inner, half);
+        }
+        (node, corner, size)
     }
 
     /// Edge of the smallest cell.
@@ -232,6 +259,12 @@ impl Tree {
             }
         }
     }
+}
+
+/// The next whole number, without a call; 0 for negative ones.
+fn ceil(x: f64) -> usize {
+    let whole = x as usize;
+    whole + usize::from(x > whole as f64)
 }
 
 #[cfg(test)]

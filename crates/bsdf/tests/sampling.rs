@@ -3,12 +3,15 @@
 
 mod common;
 
-use common::{directions, fabrics, halton, one_sided, random, shared_bsdfs};
+use common::{directions, fabrics, halton, one_sided, random, shared_bsdfs, uncommon_tables};
 use glam::DVec2;
-use std::f64::consts::PI;
+use rayon::prelude::*;
+use std::{f64::consts::PI, sync::Arc};
 use sunpeak_bsdf::{
-    Bsdf, Mode, Oriented, PeakRule,
+    Bsdf, Distribution, Mode, Oriented, PeakRule, Sides,
+    synthetic::Fabric,
     table::{Columns, Table, turned, turned_back},
+    xml::Document,
 };
 use sunpeak_core::{Vec3, luminance};
 
@@ -117,18 +120,69 @@ fn tables_of_one_side_have_a_peak_to_leave_out() {
     }
 }
 
+/// Uncommon tables on both halves: what comes back has a lobe too.
+fn reflecting() -> Vec<(String, Bsdf)> {
+    let both = |(name, _, table): (&str, &str, Table)| {
+        let reflection = Some(Arc::new(Distribution::new(table.clone(), None)));
+        let transmission_back = Some(Arc::new(Distribution::with_split(table, None)));
+        let sides = Sides {
+            reflection_front: reflection.clone(),
+            reflection_back: reflection,
+            transmission_back,
+            ..Sides::default()
+        };
+        (format!("{name}, reflecting"), Bsdf::from_sides(Document::default(), sides))
+    };
+    uncommon_tables().map(both).into()
+}
+
+/// Fabrics with more cells than blocks of them are remembered.
+fn large_fabrics() -> Vec<(String, Bsdf)> {
+    let fabric = |name: &str| (name.to_owned(), Fabric::default().tabulate(name.parse().unwrap()).unwrap());
+    ["t3-16384", "t4-1024"].map(fabric).into()
+}
+
+/// Near the normal, halfway, and grazing, on both sides.
+fn incidences() -> [Vec3; 6] {
+    let at = |theta_deg: f64, phi_deg: f64| {
+        let (sin, cos) = theta_deg.to_radians().sin_cos();
+        DVec2::from_angle(phi_deg.to_radians()).extend(0.0) * sin + Vec3::Z * cos
+    };
+    [
+        at(0.7, 41.0),
+        directions(8, true)[6],
+        at(87.3, 203.0),
+        at(179.2, 118.0),
+        directions(5, false)[4],
+        at(93.1, 317.0),
+    ]
+}
+
+/// How many standard deviations chi-square is from its mean (Wilson and Hilferty 1931): right for few degrees of freedom too.
+fn deviation(chi: f64, freedom: f64) -> f64 {
+    let variance = 2.0 / (9.0 * freedom);
+    ((chi / freedom).cbrt() - (1.0 - variance)) / variance.sqrt()
+}
+
 #[test]
 fn samples_follow_their_density() {
-    for (name, bsdf) in every_bsdf() {
-        for rule in RULES {
-            for w_in in [directions(8, true)[6], directions(5, false)[4]] {
-                let Some((chi, groups)) = chi_square(&bsdf, w_in, rule) else { continue };
-                // Chi-square has the mean `groups` and the variance twice that.
-                let limit = groups + 5.0 * (2.0 * groups).sqrt();
-                assert!(chi < limit, "{name} {rule:?} {w_in}: chi-square {chi} in {groups} groups");
+    let all: Vec<_> = every_bsdf().into_iter().chain(reflecting()).chain(large_fabrics()).collect();
+    let counted: usize = all
+        .par_iter()
+        .map(|(name, bsdf)| {
+            let mut counted = 0;
+            for (rule, w_in) in RULES.into_iter().flat_map(|rule| incidences().map(|w_in| (rule, w_in))) {
+                let Some((chi, groups)) = chi_square(bsdf, w_in, rule) else { continue };
+                let sigmas = deviation(chi, (groups - 1.0).max(1.0));
+                assert!(sigmas < 4.0, "{name} {rule:?} {w_in}: chi-square {chi} in {groups} groups");
+                counted += 1;
             }
-        }
-    }
+            counted
+        })
+        .sum();
+    // Nothing but a pure peak leaves nothing to sample.
+    let possible = all.len() * RULES.len() * incidences().len();
+    assert!(counted * 10 > possible * 9, "{counted} of {possible}");
 }
 
 /// The weights' mean is the integral of what is sampled; where columns are the table's own, it is the hemispherical value.

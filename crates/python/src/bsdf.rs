@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 use rayon::prelude::*;
 use std::path::PathBuf;
 use std::sync::Arc;
-use sunpeak_bsdf::{Bsdf, ColumnPeak, Mode, PeakRule, table::Table};
+use sunpeak_bsdf::{Bsdf, ColumnPeak, Instrument, Mode, PeakRule, table::Table};
 use sunpeak_core::{Rgb, Vec3, luminance};
 
 /// One product: front and back, reflection and transmission. Arrays are (n, 3) in the BSDF's frame.
@@ -35,6 +35,15 @@ pub fn mode(name: &str) -> PyResult<Mode> {
     }
 }
 
+/// What an instrument did, by its width or to be found.
+pub fn instrument(fwhm_deg: Option<f64>, find: bool) -> Instrument {
+    match fwhm_deg {
+        _ if find => Instrument::Find,
+        Some(fwhm) => Instrument::FwhmDeg(fwhm),
+        None => Instrument::None,
+    }
+}
+
 /// One draw from both lobes.
 struct Draw {
     w_out: Vec3,
@@ -46,8 +55,15 @@ struct Draw {
 #[pymethods]
 impl PyBsdf {
     #[staticmethod]
-    fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        let bsdf = py.detach(|| Bsdf::load(&path)).or_raise()?;
+    #[pyo3(signature = (path, instrument_fwhm_deg=None, find_instrument=false))]
+    fn load(
+        py: Python<'_>,
+        path: PathBuf,
+        instrument_fwhm_deg: Option<f64>,
+        find_instrument: bool,
+    ) -> PyResult<Self> {
+        let instrument = instrument(instrument_fwhm_deg, find_instrument);
+        let bsdf = py.detach(|| Bsdf::load_measured(&path, instrument)).or_raise()?;
         Ok(Self(Arc::new(bsdf)))
     }
 
@@ -193,6 +209,7 @@ impl PyBsdf {
         about.set_item("colour", distribution.color().is_some())?;
         about.set_item("by_reciprocity", oriented.reversed)?;
         about.set_item("has_peak", distribution.split().has_peak())?;
+        about.set_item("instrument_fwhm_deg", distribution.split().instrument_fwhm_deg())?;
         Ok(Some(about))
     }
 

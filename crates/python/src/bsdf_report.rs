@@ -125,6 +125,12 @@ pub fn through_interval<'py>(
 
 /// Write the split to a folder; gives the files' names.
 #[pyfunction]
+pub fn bsdf_xml(py: Python<'_>, bsdf: &PyBsdf) -> String {
+    py.detach(|| bsdf.0.to_xml())
+}
+
+/// Write the split to a folder.
+#[pyfunction]
 pub fn save_split(py: Python<'_>, bsdf: &PyBsdf, folder: PathBuf) -> PyResult<Vec<PathBuf>> {
     py.detach(|| bsdf.0.save_split(&folder)).or_raise()
 }

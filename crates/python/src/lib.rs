@@ -10,6 +10,7 @@ mod picture;
 mod render;
 mod scene;
 mod sky;
+mod synthetic;
 mod watch;
 
 use pyo3::prelude::*;
@@ -21,7 +22,7 @@ mod _core {
     use super::bsdf::PyBsdf;
     #[pymodule_export]
     use super::bsdf_report::{
-        bsdf_report, exit_cells, incident_cells, probe_directions, save_split, through_interval,
+        bsdf_report, bsdf_xml, exit_cells, incident_cells, probe_directions, save_split, through_interval,
     };
     #[pymodule_export]
     use super::error::InputError;
@@ -37,6 +38,8 @@ mod _core {
     use super::scene::{PyScene, PyView};
     #[pymodule_export]
     use super::sky::PySky;
+    #[pymodule_export]
+    use super::synthetic::{synthetic_bsdf, synthetic_through};
 
     use pyo3::prelude::*;
 

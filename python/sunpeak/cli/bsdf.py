@@ -10,7 +10,7 @@ from sunpeak.bsdf_plot import Kind, is_picture, plot_bsdf
 from sunpeak.cli.bsdf_show import show
 from sunpeak.cli.options import Quiet
 from sunpeak.cli.output import emit_json, note
-from sunpeak.cli.values import parse_numbers
+from sunpeak.cli.values import parse_instrument, parse_numbers
 from sunpeak.fabrics import Fabric
 from sunpeak.inspection import inspect
 from sunpeak.scattering import Bsdf, Peak, side_of_ray
@@ -18,16 +18,27 @@ from sunpeak.scattering import Bsdf, Peak, side_of_ray
 app = typer.Typer(no_args_is_help=True, help="Look into a BSDF file.")
 
 File = Annotated[Path, typer.Argument(help="LBNL XML file, or the folder of a split.")]
+Instrument = Annotated[
+    Any,
+    typer.Option(
+        "--instrument-fwhm",
+        parser=parse_instrument,
+        metavar="DEG|find",
+        help="Measured data: full width at half maximum of what the instrument makes of a sharp beam, or find it.",
+    ),
+]
 Json = Annotated[bool, typer.Option("--json", help="One JSON value on standard output.")]
 
 
 @app.command("info")
-def info(file: File, as_json: Json = False) -> None:
+def info(file: File, instrument_fwhm: Instrument = None, as_json: Json = False) -> None:
     """What is in it, is it sound, will peak extraction fire, and why.
 
     [dim]$[/dim] [cyan]sunpeak bsdf info shade.xml[/cyan]
+
+    [dim]$[/dim] [cyan]sunpeak bsdf info measured.xml --instrument-fwhm find[/cyan]
     """
-    report = inspect(str(file))
+    report = inspect(str(file), instrument_fwhm)
     if as_json:
         emit_json(report.to_dict())
     else:
@@ -45,13 +56,14 @@ def through(
         Any, typer.Option(parser=parse_numbers, metavar="DEG,…", help="Azimuth, from x, towards which the ray runs.")
     ] = "0",
     peak: Annotated[Peak, typer.Option(help="Rule that finds the peak.")] = "split",
+    instrument_fwhm: Instrument = None,
     as_json: Json = False,
 ) -> None:
     """Through transmittance by angle: a line of theta, phi and T for each direction.
 
     [dim]$[/dim] [cyan]sunpeak bsdf through shade.xml --theta 0,10,20 --phi 0,90[/cyan]
     """
-    bsdf = Bsdf.load(file)
+    bsdf = Bsdf.load(file, instrument_fwhm_deg=instrument_fwhm)
     angles = np.array([(t, p) for p in phi for t in theta])
     values = bsdf.through(side_of_ray(angles[:, 0], angles[:, 1]), peak)
     if as_json:
@@ -87,6 +99,7 @@ def fabric(
 def split(
     file: File,
     output: Annotated[Path, typer.Option("--output", "-o", metavar="FOLDER", help="Where the files go.")],
+    instrument_fwhm: Instrument = None,
     quiet: Quiet = False,
 ) -> None:
     """Write the split as files: the residual as LBNL XML, the peak as JSON and CSV, and where the flux went.
@@ -94,8 +107,10 @@ def split(
     Commands that read a BSDF read the folder, too; a scene names the peak.json in it.
 
     [dim]$[/dim] [cyan]sunpeak bsdf split shade.xml -o shade_split[/cyan]
+
+    [dim]$[/dim] [cyan]sunpeak bsdf split measured.xml -o measured_split --instrument-fwhm 1.5[/cyan]
     """
-    for written in Bsdf.load(file).save_split(output):
+    for written in Bsdf.load(file, instrument_fwhm_deg=instrument_fwhm).save_split(output):
         note(str(written), quiet)
 
 
@@ -110,6 +125,7 @@ def plot(
     ] = 0.0,
     phi: Annotated[float, typer.Option(help="Azimuth, from x, towards which the ray runs, degrees.")] = 0.0,
     kind: Annotated[Kind, typer.Option(help="What to draw.")] = "all",
+    instrument_fwhm: Instrument = None,
     quiet: Quiet = False,
 ) -> None:
     """Draw the exit hemisphere, the map of T over all incidences, and a profile through the peak.
@@ -118,7 +134,7 @@ def plot(
     """
     if not is_picture(output):
         raise typer.BadParameter(f"{output}: expected a name that ends in .png or .svg, or without a suffix")
-    bsdf = Bsdf.load(file)
+    bsdf = Bsdf.load(file, instrument_fwhm_deg=instrument_fwhm)
     label = bsdf.describe()["name"] or file.stem
     for written in plot_bsdf(bsdf, output, theta_deg=theta, phi_deg=phi, kind=kind, label=label):
         note(str(written), quiet)

@@ -23,6 +23,10 @@ def show(inspection: Inspection) -> None:
     console.print(f"{inspection.file}: {about['structure']}")
     for warning in about["warnings"]:
         console.print(f"[yellow]warning:[/yellow] {warning}", soft_wrap=True)
+    for part in about["components"]:
+        if part["instrument_fwhm_deg"] is not None:
+            width = f"{part['instrument_fwhm_deg']:.2g} degrees"
+            console.print(f"{part['side']}: the peak is taken as a beam that an instrument widened to {width}")
     console.print(tables(report))
     console.print(hemispherical(report))
     console.print(checks(report))

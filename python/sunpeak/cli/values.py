@@ -3,6 +3,7 @@
 import math
 import re
 from datetime import datetime
+from typing import Literal
 
 import typer
 
@@ -60,3 +61,16 @@ def parse_time(text: str) -> datetime:
     if when.tzinfo is None:
         raise typer.BadParameter(f"{text!r}; expected a time zone at its end, as in {text}+01:00")
     return when
+
+
+def parse_instrument(text: str) -> float | Literal["find"]:
+    """`1.5` as degrees, or `find`."""
+    if text.strip() == "find":
+        return "find"
+    try:
+        width = float(text)
+    except ValueError as error:
+        raise typer.BadParameter(f"{text!r}; expected degrees, as in 1.5, or find") from error
+    if not 0.05 <= width <= 20.0:
+        raise typer.BadParameter(f"{text!r}; expected 0.05 to 20 degrees, or find")
+    return width

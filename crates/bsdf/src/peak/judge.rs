@@ -68,7 +68,8 @@ impl<'a> Judged<'a> {
             surround.misfit.flux_variance(value(c.index), c.projected_solid_angle)
         };
         let counted = (error * error + cells().map(flux).sum::<f64>()).sqrt();
-        let excess = sum(&|e, v| v - e.value).max(0.0);
+        // Where one cell is all there is, nothing tells a peak from a smooth table: it is smooth.
+        let excess = if n.around.is_empty() { 0.0 } else { sum(&|e, v| v - e.value).max(0.0) };
         Self {
             n,
             surround,
@@ -111,7 +112,8 @@ impl<'a> Judged<'a> {
                 let (index, area, _) = lowered[0][i];
                 let rest: Vec<f32> = lowered.iter().map(|channel| channel[i].2).collect();
                 let whole: Vec<f32> = channels.iter().map(|c| c[index]).collect();
-                let rest = to_rgb(&rest);
+                // A channel may come out higher than the table's: from XYZ to RGB more is not always more.
+                let rest = to_rgb(&rest).min(to_rgb(&whole));
                 // From the stored numbers, so that residual and peak make up the table exactly.
                 let stored = DVec3::from(rest.as_vec3());
                 through += (to_rgb(&whole) - stored).max(Rgb::ZERO) * area;

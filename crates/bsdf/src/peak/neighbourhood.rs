@@ -1,15 +1,23 @@
 //! Where a column's peak lies, and what lies around it.
 
-use super::shape::{Distances, Shape};
+use super::{
+    instrument,
+    shape::{Distances, Shape},
+};
 use crate::{
-    kernel::{Kernel, Spread},
+    kernel::Spread,
     table::{Cell, Columns, Table},
 };
 use glam::DVec2;
-use std::{cell::OnceCell, collections::HashMap};
+use std::cell::OnceCell;
+use sunpeak_core::warp::disk_to_square;
 
 /// How far the fit looks, in widths of the peak's region.
 const REACH: f64 = 4.1;
+
+/// Least factor by which distances grow from the unit square to the disk: with r = a, phi = pi/4 b/a on the square of edge 2 the
+/// singular values' product is pi/4 and the sum of their squares at most 1 + pi²/8, so that the smaller one is at least 0.565.
+const LEAST_STRETCH: f64 = 2.0 * 0.565;
 
 /// Share of an instrument's blurred peak whose cells are measured; the rest of it is known from its shape.
 const CORE: f64 = 0.9;
@@ -21,7 +29,7 @@ const LEAST_SHARE: f64 = 1e-6;
 const BESIDE: f64 = 1e-7;
 
 /// Points a side of a cell for averaging with their weights (Gauss-Legendre): exact to the third, fifth, seventh, ninth power.
-const RULES: [&[(f64, f64)]; 4] = [
+pub const RULES: [&[(f64, f64)]; 4] = [
     &[(0.211_324_865_405_187_1, 0.5), (0.788_675_134_594_812_9, 0.5)],
     &[(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)],
     &[
@@ -71,13 +79,18 @@ pub struct Neighbourhood {
 impl Neighbourhood {
     /// Find a column's cells; `blur` is what the instrument made of a delta.
     pub fn of(table: &Table, columns: &Columns, column: usize, blur: Option<Spread>) -> Self {
-        let (touched, shares) = landing(table, columns, column, blur);
+        let touched = path(table, columns, column);
+        let cells = table.cells(columns, column);
+        let shares = match blur {
+            // All of it lies in the cells that the straight direction touches.
+            None => vec![1.0 / touched.len() as f64; cells.len()],
+            Some(spread) => instrument::shares(table, columns, column, &cells, spread),
+        };
         let (mut core, mut fringe, mut others) = (Vec::new(), Vec::new(), Vec::new());
-        for cell in table.cells(columns, column) {
-            let share = shares.iter().find(|s| s.0 == cell.index).map_or(0.0, |s| s.1);
+        for (cell, share) in cells.into_iter().zip(shares) {
             if touched.contains(&cell.index) {
                 core.push(Blurred { cell, share });
-            } else if share > LEAST_SHARE {
+            } else if blur.is_some() && share > LEAST_SHARE {
                 fringe.push(Blurred { cell, share });
             } else {
                 others.push(cell);
@@ -104,10 +117,16 @@ impl Neighbourhood {
         self.cell_width = self.core.iter().map(width).fold(0.0, f64::max);
         let radius = self.core.iter().map(|b| distance(&b.cell)).fold(0.0, f64::max);
         let region = self.cell_width.max(radius);
-        let weight = |cell: &Cell| 1.0 / (1.0 + (distance(cell) / region).powi(2));
-        self.around = self.fringe.iter().map(|b| (b.cell, weight(&b.cell))).collect();
-        let near = others.into_iter().filter(|cell| distance(cell) <= REACH * region);
-        self.around.extend(near.map(|cell| (cell, weight(&cell))));
+        let mut near: Vec<(Cell, f64)> = self.fringe.iter().map(|b| (b.cell, distance(&b.cell))).collect();
+        near.extend(within(table, &others, straight, REACH * region));
+        if near.is_empty() {
+            // In bases whose patches are long and narrow all others may lie further away: then the nearest ones.
+            let all = within(table, &others, straight, f64::INFINITY);
+            let nearest = all.iter().map(|n| n.1).fold(f64::INFINITY, f64::min);
+            near = all.into_iter().filter(|n| n.1 <= nearest).collect();
+        }
+        let weight = |distance: f64| 1.0 / (1.0 + (distance / region).powi(2));
+        self.around = near.into_iter().map(|(cell, distance)| (cell, weight(distance))).collect();
     }
 
     /// What a lobe's averages over the core's cells and over those around it follow from.
@@ -151,37 +170,58 @@ impl Averages<'_> {
     }
 
     fn distances(&self, rule: &[(f64, f64)]) -> Vec<Distances> {
-        let incident: Vec<(DVec2, f64)> =
-            product(rule).into_iter().map(|(u, w)| (self.columns.point(self.column, u), w)).collect();
         let cells = self.n.core.iter().map(|b| &b.cell).chain(self.n.around.iter().map(|a| &a.0));
-        cells
-            .map(|cell| {
-                let exits = product(rule).into_iter().map(|(u, w)| (self.table.point(cell, u), w));
-                Distances::new(exits.flat_map(|(q, w)| incident.iter().map(move |&(p, v)| (p, q, w * v))))
-            })
-            .collect()
+        distances(self.table, self.columns, self.column, cells, rule)
     }
+}
+
+/// Distances of a column's points from those of cells, by a rule of [`RULES`].
+pub fn distances<'a>(
+    table: &Table,
+    columns: &Columns,
+    column: usize,
+    cells: impl Iterator<Item = &'a Cell>,
+    rule: &[(f64, f64)],
+) -> Vec<Distances> {
+    let incident: Vec<(DVec2, f64)> =
+        product(rule).into_iter().map(|(u, w)| (columns.point(column, u), w)).collect();
+    cells
+        .map(|cell| {
+            let exits = product(rule).into_iter().map(|(u, w)| (table.point(cell, u), w));
+            Distances::new(exits.flat_map(|(q, w)| incident.iter().map(move |&(p, v)| (p, q, w * v))))
+        })
+        .collect()
+}
+
+/// The cells whose middles lie within `reach` of a point, with their distances from it.
+fn within(table: &Table, cells: &[Cell], point: DVec2, reach: f64) -> Vec<(Cell, f64)> {
+    // On the square a cell that is too far away is told without mapping it to the disk.
+    let at = disk_to_square(point.into());
+    let furthest = reach / LEAST_STRETCH;
+    let may_be_near = |cell: &&Cell| {
+        cell.square().is_none_or(|square| {
+            let middle = |k: usize| f64::from(square.corner[k]) + 0.5 * f64::from(square.size);
+            [0, 1].iter().all(|&k| (middle(k) - at[k]).abs() <= furthest)
+        })
+    };
+    let distance = |cell: &Cell| (table.point(cell, [0.5, 0.5]) - point).length();
+    let near = cells.iter().filter(may_be_near).map(|cell| (*cell, distance(cell)));
+    near.filter(|(_, distance)| *distance <= reach).collect()
 }
 
 fn product(rule: &[(f64, f64)]) -> Vec<([f64; 2], f64)> {
     rule.iter().flat_map(|&(u, a)| rule.iter().map(move |&(v, b)| ([u, v], a * b))).collect()
 }
 
-/// Indices of the cells that the straight direction sweeps while the incidence moves over its column, and the share of the straight
-/// flux in each cell that the blur reaches; without one, all of it lies in the swept cells.
-fn landing(
-    table: &Table,
-    columns: &Columns,
-    column: usize,
-    blur: Option<Spread>,
-) -> (Vec<usize>, Vec<(usize, f64)>) {
+/// Indices of the cells that the straight direction sweeps while the incidence moves over its column.
+fn path(table: &Table, columns: &Columns, column: usize) -> Vec<usize> {
     let n = if matches!(table, Table::Matrix(_)) { 16 } else { 2 };
+    // Columns of isotropic tables have their points on the x axis already.
+    let sides: &[f64] = if table.is_isotropic() { &[-BESIDE, BESIDE] } else { &[0.0] };
     let mut touched = Vec::new();
     for i in 0..n * n {
         let u = [((i % n) as f64 + 0.5) / n as f64, ((i / n) as f64 + 0.5) / n as f64];
         let p = columns.point(column, u);
-        // Columns of isotropic tables have their points on the x axis already.
-        let sides: &[f64] = if table.is_isotropic() { &[-BESIDE, BESIDE] } else { &[0.0] };
         for &dy in sides {
             let index = table.index(p, p + DVec2::new(0.0, dy));
             if !touched.contains(&index) {
@@ -189,23 +229,5 @@ fn landing(
             }
         }
     }
-    let Some(spread) = blur else {
-        let share = 1.0 / touched.len() as f64;
-        let shares = touched.iter().map(|&index| (index, share)).collect();
-        return (touched, shares);
-    };
-    let middle = columns.point(column, [0.5, 0.5]);
-    let width = table.projected_solid_angle(middle, middle + DVec2::new(0.0, BESIDE)).sqrt();
-    let kernel = Kernel::new(spread, width);
-    // Points of the column a standard deviation apart.
-    let n = (width / spread.sigma()).clamp(4.0, 24.0).ceil() as usize;
-    let mut shares = HashMap::new();
-    for i in 0..n * n {
-        let u = [((i % n) as f64 + 0.5) / n as f64, ((i / n) as f64 + 0.5) / n as f64];
-        let p = columns.point(column, u);
-        kernel.around(p, |q, weight| {
-            *shares.entry(table.index(p, q)).or_insert(0.0) += weight / (n * n) as f64
-        });
-    }
-    (touched, shares.into_iter().collect())
+    touched
 }

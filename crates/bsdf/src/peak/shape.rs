@@ -1,6 +1,9 @@
 //! The shapes that a smooth lobe around the straight direction may have.
 
-use crate::{kernel::TENTH_WIDTH, table::Table};
+use crate::{
+    kernel::{Spread, TENTH_WIDTH},
+    table::Table,
+};
 use glam::DVec2;
 
 /// Widest lobe [rad, or projected units]: wider ones look flat under any cell.
@@ -19,10 +22,14 @@ pub struct Shape {
     pub in_angle: bool,
 }
 
-/// The shapes to try for a table, widest first, each squared width 1/sqrt(2) of the one before: each on the disk and, where the
-/// difference is seen, in angle.
-pub fn shapes(table: &Table) -> Vec<Shape> {
+/// Through an instrument lobes narrower than so many times its blur look like the blur itself.
+const WIDER_THAN_BLUR: f64 = 2.0;
+
+/// The shapes to try for a table that an instrument may have blurred, widest first, each squared width 1/sqrt(2) of the one before:
+/// each on the disk and in angle.
+pub fn shapes(table: &Table, blur: Option<Spread>) -> Vec<Shape> {
     let narrowest = NARROWEST * table.smallest_projected_solid_angle().sqrt();
+    let narrowest = narrowest.max(WIDER_THAN_BLUR * blur.map_or(0.0, Spread::sigma));
     let mut shapes = Vec::new();
     let mut sigma = WIDEST;
     while sigma >= narrowest {

@@ -82,7 +82,7 @@ impl Split {
         let blur = instrument_fwhm_deg.map(instrument::blur);
         let neighbourhoods: Vec<_> =
             (0..columns.len()).into_par_iter().map(|c| Neighbourhood::of(table, columns, c, blur)).collect();
-        let surrounds = surround::estimate(table, columns, &neighbourhoods, &channels);
+        let surrounds = surround::estimate(table, columns, &neighbourhoods, &channels, blur);
         let judged: Vec<Judged> = neighbourhoods
             .par_iter()
             .zip(&surrounds)

@@ -12,7 +12,10 @@ use super::{
     noise::{ColumnNoise, Noise, median},
     shape::{Shape, shapes},
 };
-use crate::table::{Columns, Table};
+use crate::{
+    kernel::Spread,
+    table::{Columns, Table},
+};
 use rayon::prelude::*;
 
 /// A shape is as good as the best one if its misfit is within this factor of it …
@@ -50,14 +53,15 @@ pub struct Surround {
     pub misfit: Noise,
 }
 
-/// The surround of every column's core, by channel.
+/// The surround of every column's core, by channel; `blur` is what an instrument made of a delta.
 pub fn estimate(
     table: &Table,
     columns: &Columns,
     neighbourhoods: &[Neighbourhood],
     channels: &[&[f32]],
+    blur: Option<Spread>,
 ) -> Vec<Surround> {
-    let shapes = shapes(table);
+    let shapes = shapes(table, blur);
     let fits: Vec<ColumnFits> = neighbourhoods
         .par_iter()
         .enumerate()

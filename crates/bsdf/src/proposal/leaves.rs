@@ -142,25 +142,28 @@ impl Leaves {
         });
     }
 
-    /// A point of a block, in proportion to the values.
-    pub fn point(&self, p_in: DVec2, column: usize, block: usize, [pick, u, v]: [f64; 3]) -> Option<DVec2> {
-        let window = self.block(block);
-        let part = if self.blocks == self.side {
-            window
-        } else {
-            let mut choice = Choice::new(pick);
-            self.visit(column, window, |leaf, part| {
-                choice.offer(luminance(self.value(column, leaf)) * part.size * part.size, part);
-            });
-            choice.taken()?
-        };
+    /// A point of a block, in proportion to the values, and its cell's value [1/sr] where that is the table's.
+    pub fn point(
+        &self,
+        p_in: DVec2,
+        column: usize,
+        block: usize,
+        [pick, u, v]: [f64; 3],
+    ) -> Option<(DVec2, Option<Rgb>)> {
+        let mut choice = Choice::new(pick);
+        self.visit(column, self.block(block), |leaf, part| {
+            let value = self.value(column, leaf);
+            choice.offer(luminance(value) * part.size * part.size, (part, value));
+        });
+        let (part, value) = choice.taken()?;
         let p: DVec2 =
             square_to_disk([part.corner[0] + u * part.size, part.corner[1] + v * part.size]).into();
-        Some(match (&self.columns, self.target.oriented.reversed) {
+        let p = match (&self.columns, self.target.oriented.reversed) {
             (Columns::Radial { .. }, _) => turned_back(p_in, p),
             (_, false) => p,
             (_, true) => -p,
-        })
+        };
+        Some((p, self.taken.is_none().then_some(value)))
     }
 
     /// The luminous value that is sampled [1/sr], where the table has `value` [1/sr].

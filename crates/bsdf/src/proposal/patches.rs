@@ -13,6 +13,8 @@ pub struct Patches {
     /// Where rays come from, and where they go.
     fixed: Arc<AngleBasis>,
     sampled: Arc<AngleBasis>,
+    /// The ring of each patch where rays go.
+    rings: Vec<u32>,
     /// Patches in a block.
     run: usize,
     /// -1 against the table, where patches are those of the opposite side: turned by half a circle.
@@ -27,7 +29,9 @@ impl Patches {
         let (fixed, sampled) = if reversed { (exiting, incident) } else { (incident, exiting) };
         let blocks = (most_blocks(matrix.values.len()) / fixed.len()).max(1);
         let run = sampled.len().div_ceil(blocks);
-        Self { target: target.clone(), fixed, sampled, run, facing: if reversed { -1.0 } else { 1.0 } }
+        let rings = sampled.rings().iter().enumerate();
+        let rings = rings.flat_map(|(n, ring)| std::iter::repeat_n(n as u32, ring.phi_count)).collect();
+        Self { target: target.clone(), fixed, sampled, rings, run, facing: if reversed { -1.0 } else { 1.0 } }
     }
 
     /// How many columns.
@@ -45,13 +49,17 @@ impl Patches {
         self.sampled.len().div_ceil(self.run)
     }
 
-    fn flux(&self, column: usize, patch: usize) -> Rgb {
+    fn value(&self, column: usize, patch: usize) -> Rgb {
         let (incident, index) = if self.target.oriented.reversed {
             (patch, patch * self.fixed.len() + column)
         } else {
             (column, column * self.sampled.len() + patch)
         };
-        self.target.value(incident, index) * self.sampled.projected_solid_angle(patch)
+        self.target.value(incident, index)
+    }
+
+    fn flux(&self, column: usize, patch: usize) -> Rgb {
+        self.value(column, patch) * self.sampled.projected_solid_angle(patch)
     }
 
     /// The flux of each part of a column [-], with its block.
@@ -61,18 +69,27 @@ impl Patches {
         }
     }
 
-    /// A point of a block, in proportion to the values.
-    pub fn point(&self, column: usize, block: usize, [pick, u, v]: [f64; 3]) -> Option<DVec2> {
+    /// A point of a block, in proportion to the values, and its patch's value [1/sr]; `pick` gives a random number where one patch
+    /// of several has to be chosen.
+    #[inline]
+    pub fn point(
+        &self,
+        column: usize,
+        block: usize,
+        pick: impl Fn() -> f64,
+        u: [f64; 2],
+    ) -> Option<(DVec2, Option<Rgb>)> {
         let first = block * self.run;
         let patch = if self.run == 1 {
             first
         } else {
-            let mut choice = Choice::new(pick);
+            let mut choice = Choice::new(pick());
             for patch in first..(first + self.run).min(self.sampled.len()) {
                 choice.offer(luminance(self.flux(column, patch)), patch);
             }
             choice.taken()?
         };
-        Some(self.facing * self.sampled.point(patch, [u, v]))
+        let ring = &self.sampled.rings()[self.rings[patch] as usize];
+        Some((self.facing * ring.point(patch, u), Some(self.value(column, patch))))
     }
 }

@@ -74,7 +74,7 @@ impl Points {
         if pick < UNIFORM_SHARE {
             return square_to_disk([u, v]).into();
         }
-        let (cell, _) = shares.pick(column, (pick - UNIFORM_SHARE) / (1.0 - UNIFORM_SHARE));
+        let cell = shares.pick(column, (pick - UNIFORM_SHARE) / (1.0 - UNIFORM_SHARE));
         self.cell_point(cell, [u, v], p_in)
     }
 

@@ -35,6 +35,9 @@ pub struct SideFile {
     /// Which side of the frame the rays meet whose light this is: `front` or `back`.
     pub met_by_rays_at: String,
     pub basis: String,
+    /// Full width at half maximum [deg] of the instrument's blur that was taken for the peak.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub instrument_fwhm_deg: Option<f64>,
     pub division: Division,
     /// CIE channels of the excess: `Y`, or `Y`, `X`, `Z`.
     pub channels: Vec<String>,

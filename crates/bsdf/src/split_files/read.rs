@@ -123,7 +123,9 @@ impl Reader {
             Table::Matrix(m) => self.whole_matrix(side, m, &residual)?,
             Table::Tree(t) => self.whole_tree(side, t, &residual)?,
         };
-        Ok(Distribution::with_known_split(table, color, |columns| Split::from_parts(columns, parts, None)))
+        Ok(Distribution::with_known_split(table, color, |columns| {
+            Split::from_parts(columns, parts, side.instrument_fwhm_deg)
+        }))
     }
 
     fn check_side(&self, side: &SideFile, residual: &Distribution) -> Result<()> {

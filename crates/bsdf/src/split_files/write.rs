@@ -93,6 +93,7 @@ fn side(direction: &str, d: &Distribution) -> SideFile {
         direction: direction.into(),
         met_by_rays_at: if front { "front" } else { "back" }.into(),
         basis: d.luminous().basis_name(),
+        instrument_fwhm_deg: d.split().instrument_fwhm_deg(),
         division: division(d.columns()),
         channels: if d.color().is_some() { &["Y", "X", "Z"][..] } else { &["Y"] }
             .iter()

@@ -115,23 +115,41 @@ pub fn fine_basis() -> Arc<AngleBasis> {
     Arc::new(AngleBasis::new("fine", &rings).unwrap())
 }
 
-/// Tables in which sampling has to search within blocks; with one transmission only, so that it serves both sides.
-pub fn one_sided() -> Vec<(String, Bsdf)> {
-    let basis = fine_basis();
-    let n = basis.len();
-    let value = |i: usize| if i % n == i / n { 1.0 } else { 0.02 + 0.01 * random(i as u32) as f32 };
-    let values = (0..n * n).map(value).collect();
-    let matrix = Matrix { incident: basis.clone(), exiting: basis, values };
+/// A coarse basis of one's own, with odd numbers of patches.
+pub fn coarse_basis() -> Arc<AngleBasis> {
+    Arc::new(AngleBasis::new("coarse", &[(12.0, 1), (31.0, 5), (62.0, 9), (90.0, 7)]).unwrap())
+}
+
+fn matrix(incident: Arc<AngleBasis>, exiting: Arc<AngleBasis>) -> Table {
+    let n = exiting.len();
+    let value = |i: usize| {
+        let straight = exiting.index(incident.point(i / n, [0.5, 0.5]));
+        if i % n == straight { 1.0 } else { 0.02 + 0.01 * random(i as u32) as f32 }
+    };
+    let values = (0..incident.len() * n).map(value).collect();
+    Table::Matrix(Matrix { incident, exiting, values })
+}
+
+/// Tables on bases of one's own, in the largest of which sampling has to search within blocks, and trees of mixed cells: name,
+/// structure, table.
+pub fn uncommon_tables() -> [(&'static str, &'static str, Table); 5] {
     [
-        ("fine matrix", "Columns", Table::Matrix(matrix)),
+        ("fine matrix", "Columns", matrix(fine_basis(), fine_basis())),
+        ("coarse matrix", "Columns", matrix(coarse_basis(), coarse_basis())),
+        ("coarse by fine matrix", "Columns", matrix(coarse_basis(), fine_basis())),
         ("mixed t3", "TensorTree3", Table::Tree(mixed_tree(3))),
         ("mixed t4", "TensorTree4", Table::Tree(mixed_tree(4))),
     ]
-    .into_iter()
-    .map(|(name, structure, table)| {
-        let document = Document { structure: structure.into(), ..Document::default() };
-        let transmission_front = Some(Arc::new(Distribution::with_split(table, None)));
-        (name.to_owned(), Bsdf::from_sides(document, Sides { transmission_front, ..Sides::default() }))
-    })
-    .collect()
+}
+
+/// With one transmission only, so that it serves both sides.
+pub fn one_sided() -> Vec<(String, Bsdf)> {
+    uncommon_tables()
+        .into_iter()
+        .map(|(name, structure, table)| {
+            let document = Document { structure: structure.into(), ..Document::default() };
+            let transmission_front = Some(Arc::new(Distribution::with_split(table, None)));
+            (name.to_owned(), Bsdf::from_sides(document, Sides { transmission_front, ..Sides::default() }))
+        })
+        .collect()
 }
