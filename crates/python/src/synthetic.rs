@@ -1,7 +1,7 @@
 //! Products of our own making, in closed form and tabulated.
 
 use crate::arrays::{Numbers, directions, numbers};
-use crate::bsdf::{PyBsdf, instrument};
+use crate::bsdf::PyBsdf;
 use crate::error::{InputError, OrRaise};
 use glam::DVec2;
 use numpy::PyReadonlyArray2;

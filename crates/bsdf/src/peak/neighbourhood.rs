@@ -51,7 +51,7 @@ pub const RULES: [&[(f64, f64)]; 4] = [
 const ENOUGH: [f64; 2] = [1.2, 0.7];
 
 /// The finest rule pays in trees of no more columns than this: cells across the diagonals of the square have a kink.
-const MOST_FINE_COLUMNS: usize = 1024;
+const MOST_FINE_COLUMNS: usize = 256;
 
 /// A cell and the part of the straight flux that an instrument's blur puts there.
 #[derive(Clone, Copy, Debug)]
@@ -183,8 +183,11 @@ pub fn distances<'a>(
     cells: impl Iterator<Item = &'a Cell>,
     rule: &[(f64, f64)],
 ) -> Vec<Distances> {
-    let incident: Vec<(DVec2, f64)> =
-        product(rule).into_iter().map(|(u, w)| (columns.point(column, u), w)).collect();
+    let incident: Vec<(DVec2, f64)> = match columns {
+        // One coordinate only.
+        Columns::Radial { .. } => rule.iter().map(|&(u, w)| (columns.point(column, [u, 0.5]), w)).collect(),
+        _ => product(rule).into_iter().map(|(u, w)| (columns.point(column, u), w)).collect(),
+    };
     cells
         .map(|cell| {
             let exits = product(rule).into_iter().map(|(u, w)| (table.point(cell, u), w));

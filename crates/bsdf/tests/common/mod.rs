@@ -121,12 +121,18 @@ pub fn coarse_basis() -> Arc<AngleBasis> {
 }
 
 fn matrix(incident: Arc<AngleBasis>, exiting: Arc<AngleBasis>) -> Table {
-    let n = exiting.len();
-    let value = |i: usize| {
-        let straight = exiting.index(incident.point(i / n, [0.5, 0.5]));
-        if i % n == straight { 1.0 } else { 0.02 + 0.01 * random(i as u32) as f32 }
-    };
-    let values = (0..incident.len() * n).map(value).collect();
+    const THROUGH: f64 = 0.03;
+    let (n, side) = (exiting.len(), 24);
+    let mut values: Vec<f32> =
+        (0..incident.len() * n).map(|i| 0.02 + 0.01 * random(i as u32) as f32).collect();
+    for column in 0..incident.len() {
+        for i in 0..side * side {
+            let u = [i % side, i / side].map(|k| (k as f64 + 0.5) / side as f64);
+            let straight = exiting.index(incident.point(column, u));
+            let share = THROUGH / (side * side) as f64 / exiting.projected_solid_angle(straight);
+            values[column * n + straight] += share as f32;
+        }
+    }
     Table::Matrix(Matrix { incident, exiting, values })
 }
 
