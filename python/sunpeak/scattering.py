@@ -93,9 +93,7 @@ class Bsdf:
         self._core = core
 
     @classmethod
-    def load(
-        cls, path: str | PathLike[str], *, instrument_fwhm_deg: float | Literal["find"] | None = None
-    ) -> "Bsdf":
+    def load(cls, path: str | PathLike[str], *, instrument_fwhm_deg: float | Literal["find"] | None = None) -> "Bsdf":
         """Read an LBNL XML file: Klems or another basis that the file defines, or a tensor tree.
 
         A folder (or the `peak.json` in it) is read as a split that `save_split` wrote.

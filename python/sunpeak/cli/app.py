@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from sunpeak import InputError, __version__
-from sunpeak.cli import bsdf, demo, glare, render, sky, trace
+from sunpeak.cli import bsdf, demo, glare, render, sky, study, trace
 
 EXIT_WRONG_INPUT = 1
 EXIT_INTERRUPTED = 130
@@ -29,6 +29,7 @@ app.command("trace", rich_help_panel="Results")(trace.command)
 app.command("glare", rich_help_panel="Results")(glare.command)
 app.add_typer(bsdf.app, name="bsdf", rich_help_panel="Input")
 app.add_typer(sky.app, name="sky", rich_help_panel="Input")
+app.add_typer(study.app, name="study", rich_help_panel="Results")
 
 
 def show_version(wanted: bool) -> None:

@@ -22,8 +22,8 @@ pub struct ThroughMap {
 }
 
 /// Share of the second difference by which a smooth function can depart from the scaled interpolant: a parabola departs by
-/// 1/8 between the columns and 1/12 in their middle; more where the slope runs away, as at a cut-off.
-const BEND_SHARE: f64 = 1.0 / 3.0;
+/// 1/8 between the columns and 1/12 in their middle; more where the slope runs away or jumps, as at a cut-off or behind slats.
+const BEND_SHARE: f64 = 0.5;
 
 impl ThroughMap {
     /// Nothing goes through.

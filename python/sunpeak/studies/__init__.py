@@ -1,0 +1,6 @@
+"""Studies: what Sunpeak makes of products whose right answer is known."""
+
+from sunpeak.studies.peaks import Plan, run_peaks
+from sunpeak.studies.peaks_report import markdown
+
+__all__ = ["Plan", "markdown", "run_peaks"]
