@@ -110,18 +110,7 @@ class Picture:
     def header(self) -> list[str]: ...
     def sources(self) -> _Floats: ...
 
-def glare(
-    picture: Picture,
-    threshold: float,
-    threshold_kind: str,
-    task: tuple[tuple[float, float, float], float] | None,
-    search_angle_rad: float,
-    peak_cd_m2: float | None,
-    ev_lux: float | None,
-    low_light: bool,
-    below_sight: str,
-    relative_error: float,
-) -> dict[str, Any]: ...
+def glare(picture: Picture, options: dict[str, Any]) -> dict[str, Any]: ...
 def fabric_xml(
     basis: str,
     openness: float,

@@ -28,4 +28,4 @@ pub use picture::{ExactSource, Picture};
 pub use scene::{
     BsdfMaterial, Material, Modifier, ModifierId, ModifierKind, Pattern, Scene, Shape, Surface, Ward,
 };
-pub use view::{Camera, View, ViewKind, ViewRay};
+pub use view::{Camera, PixelRay, View, ViewKind, ViewRay};

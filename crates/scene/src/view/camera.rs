@@ -12,13 +12,13 @@ use sunpeak_core::Vec3;
 /// elevation.
 #[derive(Clone, Debug)]
 pub struct Camera {
-    kind: ViewKind,
+    pub(super) kind: ViewKind,
     position: Vec3,
-    forward: Vec3,
-    right: Vec3,
-    up: Vec3,
+    pub(super) forward: Vec3,
+    pub(super) right: Vec3,
+    pub(super) up: Vec3,
     /// Size of the picture on the plane.
-    size: [f64; 2],
+    pub(super) size: [f64; 2],
     /// Shift and lift, in parts of the picture.
     offset: [f64; 2],
     fore: f64,
@@ -79,7 +79,7 @@ impl Camera {
     }
 
     /// Direction in the camera's axes; its length is the distance to the surface on which clipping is measured.
-    fn local_direction(&self, u: f64, v: f64) -> Option<[f64; 3]> {
+    pub(super) fn local_direction(&self, u: f64, v: f64) -> Option<[f64; 3]> {
         let r2 = u * u + v * v;
         Some(match self.kind {
             ViewKind::Perspective | ViewKind::Parallel => [u, v, 1.0],
