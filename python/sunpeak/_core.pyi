@@ -137,6 +137,7 @@ def render(
     seed: int,
     threads: int | None,
     max_bounces: int | None,
+    goal: tuple[str, float] | None,
     progress: Callable[[int, int], None] | None,
 ) -> Picture: ...
 def trace(

@@ -47,6 +47,9 @@ def glare(
     least_solid_angle_sr: float | None = None,
     task: Task | None = None,
     source_distance_m: float | None = None,
+    tolerance_through: float = 0.0,
+    tolerance_sky: float = 0.0,
+    tolerance_position_deg: float = 0.0,
     relative_error: float = 0.0,
 ) -> GlareReport:
     """Find the glare sources in a fisheye picture and compute the daylight glare probability [1] and its siblings.
@@ -64,7 +67,12 @@ def glare(
     `ev_lux` states the vertical illuminance instead of taking it from the picture (with a simplified picture that is
     the *enhanced simplified* DGP, `report.edgps`). `low_light` multiplies `dgp` by the factor for dim scenes [2].
     `task` is the zone for `report.zones`. `source_distance_m` is how far away sources are, for UGR of small ones.
-    `relative_error` is the picture's standard error, from which the interval follows.
+
+    A picture that we rendered knows its statistical error, from which `report.sampling_intervals` follow; for others
+    `relative_error` states a standard error that Ev and the sources share. `tolerance_through` (of the through
+    transmittance or openness of what suns are seen through, relative), `tolerance_sky` (of sky and sun, relative) and
+    `tolerance_position_deg` (of where sources stand in the field of view) are half-widths of 95 % intervals of what
+    goes in; `report.input_intervals` say what they do. The class is "undecided" where both together span a border.
 
     [1] Wienold and Christoffersen 2006, Energy and Buildings 38(7).
     [2] Wienold 2012, "New features of evalglare", 11th International Radiance Workshop.
@@ -92,6 +100,9 @@ def glare(
             "up_as_given": chosen.up_as_given,
             "least_solid_angle_sr": least_solid_angle_sr,
             "source_distance_m": source_distance_m,
+            "tolerance_through": tolerance_through,
+            "tolerance_sky": tolerance_sky,
+            "tolerance_position_deg": tolerance_position_deg,
             "relative_error": relative_error,
         },
     )

@@ -56,7 +56,15 @@ class GlareReport:
     dgp: float
     """Daylight glare probability [-] (Wienold and Christoffersen 2006)."""
     dgp_interval: tuple[float, float]
-    """95 % confidence interval of `dgp` by the stated error; twice `dgp` if none was stated."""
+    """95 % confidence interval of `dgp` by the picture's statistical error; twice `dgp` if that is not known."""
+    sampling_intervals: dict[str, tuple[float, float]] | None
+    """95 % intervals of `dgp`, `ev_lux` and each rating by the picture's statistical error, if that is known."""
+    input_intervals: dict[str, tuple[float, float]] | None
+    """The same by the stated tolerances of what goes in."""
+    class_probabilities: dict[str, float]
+    """Probability of each class by both [-]."""
+    verdict: str
+    """The class if the whole interval of DGP by both lies in it, otherwise "undecided"."""
     dgp_low_light_corrected: float
     """DGP times the factor for dim scenes (Wienold 2012)."""
     dgp_in_range: bool

@@ -84,8 +84,8 @@ RULES: dict[RulesName, GlareRules] = {
     ),
 }
 """`sunpeak`: evalglare 3's way to find sources, DGP as published. `evalglare-3`: its coefficients, middles of sources
-and vertical too. `wienold-2006`: the publication of DGP: 5 times the mean of the task zone, nothing split off, Einhorn's
-position index below the line of sight."""
+and vertical too. `wienold-2006`: the publication of DGP: 5 times the mean of the task zone, nothing split off,
+Einhorn's position index below the line of sight."""
 
 
 def threshold_options(

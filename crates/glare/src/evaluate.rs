@@ -1,20 +1,19 @@
 //! From a picture to a report.
 
-use crate::class::GlareClass;
+use crate::blocks::sampling_error;
+use crate::class::{ClassVerdict, GlareClass};
 use crate::detect::{self, Head};
 use crate::dgp::{LOWEST_VALID_EV_LUX, VALID_DGP, low_light_factor};
 use crate::exact::{self, VisibleSource};
-use crate::field::Field;
+use crate::field::{Field, FieldPixel};
 use crate::metrics::{Metrics, Seen};
 use crate::options::GlareOptions;
 use crate::report::{GlareReport, Source};
 use crate::survey::{Survey, WHOLE_COVERAGE, survey};
+use crate::uncertainty::{self, Intervals};
 use crate::zones::Zones;
 use sunpeak_core::Result;
 use sunpeak_scene::Picture;
-
-/// Standard deviations of a 95 % confidence interval.
-const CONFIDENCE: f64 = 1.96;
 
 /// Find glare sources and compute DGP and its siblings.
 ///
@@ -30,21 +29,28 @@ pub fn evaluate(picture: &Picture, options: &GlareOptions) -> Result<GlareReport
     let mean = survey.whole.luminance().unwrap_or(0.0);
     let (threshold_cd_m2, rule) = detect::threshold(options, mean, &zones.luminances(&survey, &[]))?;
     let found = detect::sources(&field, threshold_cd_m2, options)?;
-    let mut sources: Vec<Source> = found.iter().map(|(source, _)| *source).collect();
-    sources.extend(glaring_suns(&field, &suns, threshold_cd_m2, options));
-    sources.sort_by(|a, b| b.weight().total_cmp(&a.weight()));
+    let head = Head { field: &field, options };
+    let mut found: Vec<(Source, Vec<FieldPixel>)> = found;
+    found.extend(glaring_suns(&head, &suns, threshold_cd_m2).into_iter().map(|sun| (sun, Vec::new())));
+    found.sort_by(|(a, _), (b, _)| b.weight().total_cmp(&a.weight()));
+    let pixels: Vec<&[FieldPixel]> = found.iter().map(|(_, pixels)| &pixels[..]).collect();
 
-    let seen = seen(sources, &survey, &suns, options);
+    let seen = seen(found.iter().map(|(source, _)| *source).collect(), &survey, &suns, options);
+    let error = sampling_error(&field, threshold_cd_m2, &pixels)?;
+    let sampling = uncertainty::sampling(&seen, error.as_ref(), threshold_cd_m2, options);
+    let input = uncertainty::input(&seen, &head, options);
     let terms = options.dgp_fit.terms(seen.ev_lux, seen.contrast_sum());
-    let factor = low_light_factor(seen.ev_lux);
-    let chosen_factor = if options.low_light { factor } else { 1.0 };
-    let dgp = terms.dgp() * chosen_factor;
+    let dgp = terms.dgp() * options.low_light_factor(seen.ev_lux);
+    let [of_sampling, of_input] = [&sampling, &input].map(|intervals| dgp_interval(dgp, intervals.as_ref()));
     warn_about_validity(terms.dgp(), seen.ev_lux, survey.coverage, options, &mut warnings);
 
     Ok(GlareReport {
         dgp,
-        dgp_interval: interval(&seen, options).map(|bound| bound * chosen_factor),
-        dgp_low_light_corrected: terms.dgp() * factor,
+        dgp_interval: of_sampling,
+        verdict: ClassVerdict::of(dgp, half_widths(dgp, [of_sampling, of_input])),
+        sampling,
+        input,
+        dgp_low_light_corrected: terms.dgp() * low_light_factor(seen.ev_lux),
         dgp_terms: terms,
         dgp_in_range: is_in_range(terms.dgp(), seen.ev_lux),
         metrics: Metrics::of(&seen),
@@ -64,13 +70,7 @@ pub fn evaluate(picture: &Picture, options: &GlareOptions) -> Result<GlareReport
 }
 
 /// Exact sources above the threshold, as glare sources.
-fn glaring_suns(
-    field: &Field,
-    suns: &[VisibleSource],
-    threshold: f64,
-    options: &GlareOptions,
-) -> Vec<Source> {
-    let head = Head { field, options };
+fn glaring_suns(head: &Head, suns: &[VisibleSource], threshold: f64) -> Vec<Source> {
     let source = |sun: &VisibleSource| Source {
         direction: sun.direction,
         solid_angle_sr: sun.solid_angle_sr,
@@ -112,12 +112,16 @@ fn with_parts(sources: Vec<Source>, contrast: f64) -> Vec<Source> {
         .collect()
 }
 
-/// 95 % confidence interval for an error that Ev and the sources share.
-fn interval(seen: &Seen, options: &GlareOptions) -> [f64; 2] {
-    [-1.0, 1.0].map(|side| {
-        let scale = (1.0 + side * CONFIDENCE * options.relative_error).max(0.0);
-        options.dgp_fit.terms(seen.ev_lux * scale, seen.contrast_sum() * scale * scale).dgp()
-    })
+/// Interval of DGP, within 0 and 1; DGP twice if there is none.
+fn dgp_interval(dgp: f64, intervals: Option<&Intervals>) -> [f64; 2] {
+    let found = intervals.and_then(|all| all.iter().find(|(name, _)| *name == "dgp"));
+    found.map_or([dgp; 2], |(_, ends)| ends.map(|end| end.clamp(0.0, 1.0)))
+}
+
+/// Half-widths downwards and upwards of independent intervals together.
+fn half_widths(middle: f64, intervals: [[f64; 2]; 2]) -> [f64; 2] {
+    let half = |end: usize| intervals.iter().map(|ends| (ends[end] - middle).powi(2)).sum::<f64>().sqrt();
+    [half(0), half(1)]
 }
 
 fn describe(rule: &str, options: &GlareOptions, has_suns: bool) -> String {

@@ -79,37 +79,38 @@ impl<'a> Field<'a> {
     /// The pixel with a luminance that is known already.
     pub fn with_luminance(&self, index: usize, luminance_cd_m2: f64) -> Option<FieldPixel> {
         let (column, row) = (index % self.width, index / self.width);
-        let pixel = self.camera.pixel(column, row, self.width, self.height)?;
+        let pixel = self.camera.pixel_ahead(column, row, self.width, self.height)?;
         let (direction, solid_angle_sr) = (pixel.direction, pixel.solid_angle_sr);
         let centre_cosine = direction.dot(self.sight);
         if solid_angle_sr <= 0.0 || centre_cosine <= 0.0 {
             return None;
         }
         let cosine = if centre_cosine < RIM_PIXELS * solid_angle_sr.sqrt() {
-            self.mean_cosine(column, row).unwrap_or(centre_cosine)
+            self.mean_cosine(column, row, solid_angle_sr).unwrap_or(centre_cosine)
         } else {
             centre_cosine
         };
         Some(FieldPixel { index, direction, solid_angle_sr, luminance_cd_m2, cosine })
     }
 
-    /// Mean cosine over the solid angle of a pixel.
-    fn mean_cosine(&self, column: usize, row: usize) -> Option<f64> {
-        let (mut sum, mut weight) = (0.0, 0.0);
+    /// Mean cosine over the solid angle of a pixel: that of a grid of points, weighted with the density of solid angle there; `None` for
+    /// views other than fisheyes.
+    fn mean_cosine(&self, column: usize, row: usize, solid_angle_sr: f64) -> Option<f64> {
         let step = 1.0 / RIM_POINTS as f64;
+        let place = |start: usize, i: usize| start as f64 + (i as f64 + 0.5) * step;
+        let mut projected = 0.0;
+        let mut seen = false;
         for i in 0..RIM_POINTS {
             for j in 0..RIM_POINTS {
-                let (left, top) = (column as f64 + i as f64 * step, row as f64 + j as f64 * step);
-                let [x0, y1] = self.picture_point(left, top);
-                let [x1, y0] = self.picture_point(left + step, top + step);
-                if let Some(ray) = self.camera.ray((x0 + x1) / 2.0, (y0 + y1) / 2.0) {
-                    let solid_angle = self.camera.solid_angle([x0, x1], [y0, y1]);
-                    sum += solid_angle * ray.direction.dot(self.sight).max(0.0);
-                    weight += solid_angle;
+                let [x, y] = self.picture_point(place(column, i), place(row, j));
+                if let Some(point) = self.camera.density(x, y) {
+                    projected += point.solid_angle_sr * point.direction.dot(self.sight).max(0.0);
+                    seen = true;
                 }
             }
         }
-        (weight > 0.0).then(|| sum / weight)
+        let area = step * step / (self.width * self.height) as f64;
+        seen.then(|| projected * area / solid_angle_sr)
     }
 
     /// Direction of a place in pixels from the top left.

@@ -9,6 +9,7 @@
 //! [`GlareOptions`] with evalglare's value as its default.
 
 mod behind;
+mod blocks;
 mod class;
 mod cluster;
 mod detect;
@@ -22,12 +23,14 @@ mod options;
 mod position_index;
 mod report;
 mod survey;
+mod uncertainty;
 mod zones;
 
-pub use class::GlareClass;
+pub use class::{ClassVerdict, GlareClass};
 pub use dgp::{DgpFit, DgpTerms, daylight_glare_probability, low_light_factor};
 pub use evaluate::evaluate;
 pub use metrics::Metrics;
-pub use options::{GlareOptions, SourceCentre, TaskZone, Threshold};
+pub use options::{GlareOptions, SourceCentre, TaskZone, Threshold, Tolerances};
 pub use position_index::{BelowSight, position_index};
 pub use report::{GlareReport, Source, ZoneLuminances};
+pub use uncertainty::Intervals;

@@ -1,6 +1,6 @@
 //! What the publications leave to the user.
 
-use crate::{BelowSight, DgpFit};
+use crate::{BelowSight, DgpFit, low_light_factor};
 use sunpeak_core::{Error, Result, Vec3};
 
 /// Above which luminance a pixel may glare.
@@ -21,6 +21,17 @@ pub struct TaskZone {
     pub direction: Vec3,
     /// Full opening angle [rad].
     pub opening_angle_rad: f64,
+}
+
+/// How well what goes in is known: half-widths of 95 % intervals; 0 is exactly.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tolerances {
+    /// Through transmittance (openness) of what suns are seen through, relative. It moves exact sources.
+    pub through: f64,
+    /// Radiance of the sky and the sun, relative. It moves everything.
+    pub sky: f64,
+    /// Position of sources in the field of view, by that of the eye, the line of sight or the sun [deg].
+    pub position_deg: f64,
 }
 
 /// Where the middle of a source is, from which its position index follows.
@@ -66,6 +77,8 @@ pub struct GlareOptions {
     pub task: Option<TaskZone>,
     /// How far away sources are [m], for the small-source extension of UGR.
     pub source_distance_m: Option<f64>,
+    /// How well what goes in is known.
+    pub tolerances: Tolerances,
     /// Standard error of the picture, relative, as far as it is common to Ev and the sources; 0 if there is none.
     pub relative_error: f64,
 }
@@ -85,6 +98,7 @@ impl Default for GlareOptions {
             least_solid_angle_sr: None,
             task: None,
             source_distance_m: None,
+            tolerances: Tolerances::default(),
             relative_error: 0.0,
         }
     }
@@ -97,6 +111,11 @@ impl GlareOptions {
             Threshold::TimesTask(_, zone) => Some(self.task.unwrap_or(zone)),
             _ => self.task,
         }
+    }
+
+    /// The factor on DGP for dim scenes, if that is asked for.
+    pub(crate) fn low_light_factor(&self, ev_lux: f64) -> f64 {
+        if self.low_light { low_light_factor(ev_lux) } else { 1.0 }
     }
 
     pub(crate) fn check(&self) -> Result<()> {
@@ -120,6 +139,10 @@ impl GlareOptions {
         positive("search angle [rad]", self.search_angle_rad)?;
         positive("peak luminance [cd/m²]", self.peak_cd_m2.unwrap_or(1.0))?;
         positive("vertical illuminance [lx]", self.ev_lux.unwrap_or(1.0))?;
+        let Tolerances { through, sky, position_deg } = self.tolerances;
+        positive("1 + tolerance of transmittance", 1.0 + through.min(0.0))?;
+        positive("1 + tolerance of the sky", 1.0 + sky.min(0.0))?;
+        positive("1 + tolerance of position", 1.0 + position_deg.min(0.0))?;
         positive("1 + relative error", 1.0 + self.relative_error)
     }
 }

@@ -1,6 +1,7 @@
 //! What was found.
 
-use crate::{DgpTerms, GlareClass, Metrics};
+use crate::uncertainty::Intervals;
+use crate::{ClassVerdict, DgpTerms, GlareClass, Metrics};
 use sunpeak_core::Vec3;
 
 /// One glare source.
@@ -54,8 +55,14 @@ pub struct ZoneLuminances {
 pub struct GlareReport {
     /// Daylight glare probability [-] (times the low-light factor only if that was asked for).
     pub dgp: f64,
-    /// 95 % confidence interval of `dgp` by the stated error of the picture; twice `dgp` if there is none.
+    /// 95 % confidence interval of `dgp` by the statistical error of the picture; twice `dgp` if there is none.
     pub dgp_interval: [f64; 2],
+    /// 95 % intervals of DGP, Ev and each rating by the statistical error of the picture, if that is known.
+    pub sampling: Option<Intervals>,
+    /// The same by the stated tolerances of what goes in.
+    pub input: Option<Intervals>,
+    /// Probability of each class by both, and whether it is decided.
+    pub verdict: ClassVerdict,
     /// DGP times the factor for dim scenes.
     pub dgp_low_light_corrected: f64,
     /// The terms of DGP, before any factor.

@@ -6,8 +6,8 @@ use rayon::prelude::*;
 use std::f64::consts::PI;
 use sunpeak_core::{Result, Vec3};
 
-/// Rows are summed up in this many parts, whatever the number of threads: the result is the same on any.
-const PARTS: usize = 32;
+/// Pixels in a part of the picture that is summed up at once: the result is the same on any number of threads.
+const PART: usize = 1 << 18;
 
 /// Solid angles are counted in whole numbers of this many to the steradian, so that their order does not matter.
 const COUNTS_PER_SR: f64 = (1_u64 << 56) as f64;
@@ -87,7 +87,7 @@ pub(crate) fn parts<T: Send>(
     field: &Field,
     work: impl Fn(std::ops::Range<usize>) -> Result<T> + Sync,
 ) -> Result<Vec<T>> {
-    let rows = field.height.div_ceil(PARTS);
+    let rows = (PART / field.width).max(1);
     (0..field.height.div_ceil(rows))
         .into_par_iter()
         .map(|part| {
@@ -162,8 +162,8 @@ impl Part {
 }
 
 impl Part {
-    /// Pixels at the rim are whole or not there, by their centres: what is missing to the hemisphere, or too much, is as bright as they
-    /// are. In `-vth`, where a rim pixel is large, that is some per cent of the solid angle (and hardly any of the illuminance).
+    /// Pixels at the rim are there or not, by their centres: what is missing to the hemisphere, or too much, is as bright as they are. In
+    /// `-vth`, where a rim pixel is large, that is some per cent of the solid angle (and a thousandth of the illuminance).
     fn close_rim(&mut self) {
         let missing = 2.0 * PI - self.whole.solid_angle_sr;
         if self.projected_sr > WHOLE_COVERAGE * PI
@@ -171,6 +171,7 @@ impl Part {
         {
             self.whole.add(luminance, missing);
             self.zones[PERIPHERY].add(luminance, missing);
+            self.illuminance_lux += (PI - self.projected_sr) * luminance;
         }
     }
 }

@@ -27,7 +27,7 @@ fn picture(kind: ViewKind, size: usize, luminance: impl Fn(Vec3) -> f64) -> Pict
     let view = view(kind);
     let camera = Camera::new(&view).unwrap();
     let value = |index: usize| {
-        let pixel = camera.pixel(index % size, index / size, size, size);
+        let pixel = camera.pixel_ahead(index % size, index / size, size, size);
         [(pixel.map_or(0.0, |pixel| luminance(pixel.direction)) / 179.0) as f32; 3]
     };
     let pixels = (0..size * size).map(value).collect();

@@ -6,7 +6,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use sunpeak_core::Vec3;
 use sunpeak_glare::{
-    BelowSight, DgpFit, GlareOptions, GlareReport, Source, SourceCentre, TaskZone, Threshold, evaluate,
+    BelowSight, ClassVerdict, DgpFit, GlareClass, GlareOptions, GlareReport, Intervals, Source, SourceCentre,
+    TaskZone, Threshold, Tolerances, evaluate,
 };
 
 /// A round zone: unit vector towards its centre, full opening angle [rad].
@@ -44,6 +45,11 @@ pub fn glare_options(given: &Bound<'_, PyDict>) -> PyResult<GlareOptions> {
         least_solid_angle_sr: given.get("least_solid_angle_sr")?.flatten(),
         task,
         source_distance_m: given.get("source_distance_m")?.flatten(),
+        tolerances: Tolerances {
+            through: given.get("tolerance_through")?.unwrap_or(0.0),
+            sky: given.get("tolerance_sky")?.unwrap_or(0.0),
+            position_deg: given.get("tolerance_position_deg")?.unwrap_or(0.0),
+        },
         relative_error: given.get("relative_error")?.unwrap_or(default.relative_error),
     })
 }
@@ -115,6 +121,10 @@ fn fields<'py>(py: Python<'py>, report: &GlareReport) -> PyResult<Bound<'py, PyD
     let all = PyDict::new(py);
     all.set_item("dgp", report.dgp)?;
     all.set_item("dgp_interval", (report.dgp_interval[0], report.dgp_interval[1]))?;
+    all.set_item("sampling_intervals", intervals(py, report.sampling.as_ref())?)?;
+    all.set_item("input_intervals", intervals(py, report.input.as_ref())?)?;
+    all.set_item("class_probabilities", probabilities(py, &report.verdict)?)?;
+    all.set_item("verdict", report.verdict.class.map_or("undecided", GlareClass::name))?;
     all.set_item("dgp_low_light_corrected", report.dgp_low_light_corrected)?;
     all.set_item("dgp_in_range", report.dgp_in_range)?;
     all.set_item("dgp_offset", report.dgp_terms.offset)?;
@@ -136,6 +146,23 @@ fn fields<'py>(py: Python<'py>, report: &GlareReport) -> PyResult<Bound<'py, PyD
     all.set_item("warnings", &report.warnings)?;
     all.set_item("sources", sources)?;
     Ok(all)
+}
+
+fn intervals<'py>(py: Python<'py>, all: Option<&Intervals>) -> PyResult<Option<Bound<'py, PyDict>>> {
+    let Some(all) = all else { return Ok(None) };
+    let fields = PyDict::new(py);
+    for &(name, [low, high]) in all {
+        fields.set_item(name, (low, high))?;
+    }
+    Ok(Some(fields))
+}
+
+fn probabilities<'py>(py: Python<'py>, verdict: &ClassVerdict) -> PyResult<Bound<'py, PyDict>> {
+    let fields = PyDict::new(py);
+    for (class, probability) in GlareClass::ALL.iter().zip(verdict.probabilities) {
+        fields.set_item(class.name(), probability)?;
+    }
+    Ok(fields)
 }
 
 fn zone_fields<'py>(py: Python<'py>, report: &GlareReport) -> PyResult<Bound<'py, PyDict>> {

@@ -6,6 +6,7 @@ mod bsdf_report;
 mod error;
 mod fabric;
 mod glare;
+mod goal;
 mod picture;
 mod render;
 mod scene;

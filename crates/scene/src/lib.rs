@@ -24,7 +24,7 @@ mod view;
 pub use disc_coverage::disc_coverage;
 pub use files::LoadOptions;
 pub use load::load_primitives;
-pub use picture::{ExactSource, Picture};
+pub use picture::{BlockErrors, ExactSource, Picture};
 pub use scene::{
     BsdfMaterial, Material, Modifier, ModifierId, ModifierKind, Pattern, Scene, Shape, Surface, Ward,
 };

@@ -35,6 +35,9 @@ def command(
             metavar="M", help="How far away sources are, for UGR of small ones.", rich_help_panel=options.SEEN
         ),
     ] = None,
+    through: options.Through = None,
+    sky: options.Sky = None,
+    position: options.Position = 0.0,
     low_light: Annotated[bool, typer.Option("--low-light", help="Lower DGP in dim scenes (Wienold 2012).")] = False,
     relative_error: Annotated[float, typer.Option(help="Standard error of the picture, for the interval.")] = 0.0,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object on standard output.")] = False,
@@ -65,6 +68,9 @@ def command(
         ev_lux=ev,
         source_distance_m=source_distance,
         low_light=low_light,
+        tolerance_through=through or 0.0,
+        tolerance_sky=sky or 0.0,
+        tolerance_position_deg=position,
         relative_error=relative_error,
     )
     for warning in report.warnings:

@@ -5,12 +5,13 @@ from typing import Annotated, Any
 
 import typer
 
-from sunpeak.cli.values import parse_numbers
+from sunpeak.cli.values import parse_numbers, parse_percent
 from sunpeak.glare_rules import BelowSight, RulesName, Task
 from sunpeak.pictures import Picture
 
 SEARCH = "How sources are found"
 SEEN = "What the picture does not say"
+TOLERANCES = "How well the input is known (half-widths of 95 % intervals)"
 
 
 def parse_task(text: str) -> tuple[float, float, float]:
@@ -64,6 +65,26 @@ LeastSolidAngle = Annotated[
 BelowSightOption = Annotated[
     BelowSight | None,
     typer.Option("--below-sight", help="Position index below the line of sight.", rich_help_panel=SEARCH),
+]
+
+
+Through = Annotated[
+    Any,
+    typer.Option(
+        "--through",
+        parser=parse_percent,
+        metavar="PCT",
+        help="Through transmittance or openness, in percent of itself.",
+        rich_help_panel=TOLERANCES,
+    ),
+]
+Sky = Annotated[
+    Any,
+    typer.Option("--sky", parser=parse_percent, metavar="PCT", help="Sky and sun.", rich_help_panel=TOLERANCES),
+]
+Position = Annotated[
+    float,
+    typer.Option("--position", metavar="DEG", help="Where sources stand in the view.", rich_help_panel=TOLERANCES),
 ]
 
 

@@ -28,10 +28,10 @@ RATINGS = {
 def show(report: GlareReport) -> None:
     """Print the report."""
     console = Console(highlight=False)
-    low, high = report.dgp_interval
-    interval = f" ({low:.3f} to {high:.3f})" if high > low else ""
     outside = "" if report.dgp_in_range else ", outside the range of DGP"
-    console.print(f"DGP         [bold]{report.dgp:.3f}[/bold]{interval}  {report.glare_class}{outside}")
+    console.print(f"DGP         [bold]{report.dgp:.3f}[/bold]  {report.glare_class}{outside}")
+    for line in intervals(report):
+        console.print(line)
     console.print(f"Ev          {report.ev_lux:.0f} lx, {report.ev_sources_lux:.0f} lx of it from glare sources")
     console.print(f"brightest   {report.max_luminance_cd_m2:.4g} cd/m²")
     console.print(
@@ -43,6 +43,21 @@ def show(report: GlareReport) -> None:
     console.print(report.rule, style="dim", soft_wrap=True)
     if report.sources:
         console.print(sources(report))
+
+
+def intervals(report: GlareReport) -> list[str]:
+    """What is known of DGP and its class, where there is an interval."""
+    lines = []
+    for heading, known in (("sampling", report.sampling_intervals), ("input", report.input_intervals)):
+        if known is not None:
+            low, high = known["dgp"]
+            ev_low, ev_high = known["ev_lux"]
+            lines.append(f"  {heading:10}{low:.4f} to {high:.4f}, Ev {ev_low:.0f} to {ev_high:.0f} lx (95 %)")
+    if lines:
+        likely = {name: share for name, share in report.class_probabilities.items() if share >= 0.0005}
+        shares = ", ".join(f"{name} {100 * share:.1f} %" for name, share in likely.items())
+        lines.append(f"  class     [bold]{report.verdict}[/bold]: {shares}")
+    return lines
 
 
 def zones(report: GlareReport) -> str:

@@ -16,13 +16,14 @@ pub struct PixelRay {
 const MIDPOINT_ERROR: f64 = 1e-6;
 
 impl Camera {
-    /// Direction and solid angle of a pixel, columns from the left, rows from the top; `None` where the view does not reach its centre.
+    /// Direction and solid angle of a pixel, columns from the left, rows from the top; `None` where the view does not reach its centre,
+    /// or reaches it behind the eye.
     ///
     /// The solid angle is [`Camera::pixel_solid_angle`] to one part in a million.
-    pub fn pixel(&self, column: usize, row: usize, width: usize, height: usize) -> Option<PixelRay> {
+    pub fn pixel_ahead(&self, column: usize, row: usize, width: usize, height: usize) -> Option<PixelRay> {
         let (width_f, height_f) = (width as f64, height as f64);
         let [u, v] = self.plane((column as f64 + 0.5) / width_f, 1.0 - (row as f64 + 0.5) / height_f);
-        let local = self.local_direction(u, v)?;
+        let local = self.local_direction(u, v).filter(|local| local[2] > 0.0)?;
         let edges = [self.size[0] / width_f, self.size[1] / height_f];
         let solid_angle_sr = self
             .midpoint_solid_angle([u, v], local, edges)
@@ -33,23 +34,39 @@ impl Camera {
         Some(PixelRay { direction, solid_angle_sr })
     }
 
-    /// Area times density; `None` where the density bends too much over the pixel.
-    ///
-    /// The midpoint rule errs by edge² / 24 times the Laplacian of the density f, relative: for `-vta` f = sin(theta) / theta and
-    /// at most 2/3 in front, for `-vth` f = 1/z and at most 5 / z⁴, for `-vts` f = 4 / (1 + r²)² and at most 8.
-    fn midpoint_solid_angle(&self, [u, v]: [f64; 2], local: [f64; 3], edges: [f64; 2]) -> Option<f64> {
-        let z = local[2];
-        let (density, curvature) = match self.kind {
-            ViewKind::AngularFisheye if z >= 0.0 => {
-                let theta = u.hypot(v);
-                (if theta > 0.0 { local[0].hypot(local[1]) / theta } else { 1.0 }, 2.0 / 3.0)
-            }
-            ViewKind::HemisphericalFisheye if z > 0.0 => (1.0 / z, 5.0 / z.powi(4)),
-            ViewKind::PlanisphericFisheye if z >= 0.0 => ((1.0 + z).powi(2), 8.0),
-            _ => return None,
-        };
+    /// Solid angle over area of the picture (whose edges are 1) at a point, and the direction there; `None` where the view does not
+    /// reach, and for views other than fisheyes.
+    pub fn density(&self, x: f64, y: f64) -> Option<PixelRay> {
+        let [u, v] = self.plane(x, y);
+        let local = self.local_direction(u, v)?;
+        let (density, _) = self.plane_density([u, v], local)?;
+        let direction = local[0] * self.right + local[1] * self.up + local[2] * self.forward;
+        Some(PixelRay { direction, solid_angle_sr: density * self.size[0] * self.size[1] })
+    }
+
+    /// Area times density; `None` where the density bends too much over the pixel: the midpoint rule errs by edge² / 24 times its curvature.
+    fn midpoint_solid_angle(&self, point: [f64; 2], local: [f64; 3], edges: [f64; 2]) -> Option<f64> {
+        let (density, curvature) = self.plane_density(point, local)?;
         let error = curvature * (edges[0].powi(2) + edges[1].powi(2)) / 24.0;
         (error < MIDPOINT_ERROR).then(|| density * edges[0] * edges[1])
+    }
+
+    /// Solid angle over area of the view's plane, and a bound of its Laplacian over itself, in front of the eye.
+    ///
+    /// The density f is for `-vta` sin(theta) / theta, bent by at most 2/3, for `-vth` 1/z, by at most 5 / z⁴, for `-vts` 4 / (1 + r²)², by at
+    /// most 8.
+    fn plane_density(&self, [u, v]: [f64; 2], local: [f64; 3]) -> Option<(f64, f64)> {
+        let z = local[2];
+        match self.kind {
+            ViewKind::AngularFisheye if z >= 0.0 => {
+                let theta2 = u * u + v * v;
+                let sine2 = local[0] * local[0] + local[1] * local[1];
+                Some((if theta2 > 0.0 { (sine2 / theta2).sqrt() } else { 1.0 }, 2.0 / 3.0))
+            }
+            ViewKind::HemisphericalFisheye if z > 0.0 => Some((1.0 / z, 5.0 / z.powi(4))),
+            ViewKind::PlanisphericFisheye if z >= 0.0 => Some(((1.0 + z).powi(2), 8.0)),
+            _ => None,
+        }
     }
 }
 
@@ -73,7 +90,7 @@ mod tests {
             let camera = Camera::new(&view).expect("a view");
             let size = 3000;
             for (column, row) in [(1500, 1500), (40, 1500), (700, 2200), (1499, 2950), (446, 445)] {
-                let Some(pixel) = camera.pixel(column, row, size, size) else { continue };
+                let Some(pixel) = camera.pixel_ahead(column, row, size, size) else { continue };
                 let exact = camera.pixel_solid_angle(column, row, size, size);
                 assert!((pixel.solid_angle_sr / exact - 1.0).abs() < 2e-6, "{kind:?} {column} {row}");
                 let [x, y] = [(column as f64 + 0.5) / 3000.0, 1.0 - (row as f64 + 0.5) / 3000.0];
