@@ -1,13 +1,11 @@
 """Glare numbers of a picture."""
 
-import math
 from typing import Literal
 
 from sunpeak import _core
 from sunpeak.glare_report import GlareReport, GlareSource, ZoneLuminances
 from sunpeak.glare_rules import (
     PEAK_CD_M2,
-    RULES,
     SEARCH_ANGLE_RAD,
     THRESHOLD_CD_M2,
     BelowSight,
@@ -15,7 +13,8 @@ from sunpeak.glare_rules import (
     GlareRules,
     RulesName,
     Task,
-    threshold_options,
+    chosen_options,
+    rules_named,
 )
 from sunpeak.pictures import Picture
 
@@ -78,42 +77,29 @@ def glare(
     [2] Wienold 2012, "New features of evalglare", 11th International Radiance Workshop.
     [3] Lighting Research & Technology 2025, doi 10.1177/14771535251314413.
     """
-    given = [value for value in (threshold_cd_m2, threshold_times_mean, threshold_times_task) if value is not None]
-    if len(given) > 1:
-        raise _core.InputError("threshold: several kinds are given; expected one")
-    factor = None
-    if threshold_times_task is not None:
-        factor, task = threshold_times_task[0], task or threshold_times_task[1]
     chosen = rules if isinstance(rules, GlareRules) else rules_named(rules)
-    found = _core.glare(
-        picture._core,
-        {
-            **threshold_options(chosen, task, threshold_cd_m2, threshold_times_mean, factor),
-            "task": None if task is None else (task.direction, math.radians(task.opening_deg)),
-            "search_angle_rad": chosen.search_angle_rad if search_angle_rad is None else search_angle_rad,
-            "peak_cd_m2": chosen.peak_cd_m2 if peak_cd_m2 == "rules" else peak_cd_m2,
-            "ev_lux": ev_lux,
-            "low_light": low_light,
-            "below_sight": below_sight or chosen.below_sight,
-            "dgp_fit": dgp_fit or chosen.dgp_fit,
-            "centre": chosen.centre,
-            "up_as_given": chosen.up_as_given,
-            "least_solid_angle_sr": least_solid_angle_sr,
-            "source_distance_m": source_distance_m,
-            "tolerance_through": tolerance_through,
-            "tolerance_sky": tolerance_sky,
-            "tolerance_position_deg": tolerance_position_deg,
-            "relative_error": relative_error,
-        },
+    options = chosen_options(
+        chosen,
+        threshold_cd_m2=threshold_cd_m2,
+        threshold_times_mean=threshold_times_mean,
+        threshold_times_task=threshold_times_task,
+        search_angle_rad=search_angle_rad,
+        peak_cd_m2=peak_cd_m2,
+        below_sight=below_sight,
+        dgp_fit=dgp_fit,
+        task=task,
     )
+    options |= {
+        "ev_lux": ev_lux,
+        "low_light": low_light,
+        "least_solid_angle_sr": least_solid_angle_sr,
+        "source_distance_m": source_distance_m,
+        "tolerance_through": tolerance_through,
+        "tolerance_sky": tolerance_sky,
+        "tolerance_position_deg": tolerance_position_deg,
+        "relative_error": relative_error,
+    }
+    found = _core.glare(picture._core, options)
     sources = [GlareSource(**source) for source in found.pop("sources")]
     zones = ZoneLuminances(**found.pop("zones"))
     return GlareReport(**found, zones=zones, sources=sources)
-
-
-def rules_named(name: str) -> GlareRules:
-    """Give the rules of that name."""
-    for known, rules in RULES.items():
-        if known == name:
-            return rules
-    raise _core.InputError(f"rules: {name!r}; expected one of {', '.join(RULES)}")

@@ -3,6 +3,7 @@
 An older number can be understood by asking for its rules again.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple, Self
 
@@ -105,3 +106,42 @@ def threshold_options(
     if rules.threshold_times_mean is not None:
         return {"threshold": rules.threshold_times_mean, "threshold_kind": "mean" if task is None else "task"}
     return {"threshold": rules.threshold_cd_m2, "threshold_kind": "luminance"}
+
+
+def chosen_options(
+    rules: GlareRules,
+    *,
+    threshold_cd_m2: float | None = None,
+    threshold_times_mean: float | None = None,
+    threshold_times_task: tuple[float, Task] | None = None,
+    search_angle_rad: float | None = None,
+    peak_cd_m2: float | Literal["rules"] | None = "rules",
+    below_sight: BelowSight | None = None,
+    dgp_fit: DgpFit | None = None,
+    task: Task | None = None,
+) -> dict[str, Any]:
+    """How sources are found, for the compiled core: what is stated, otherwise what the rules say."""
+    given = [value for value in (threshold_cd_m2, threshold_times_mean, threshold_times_task) if value is not None]
+    if len(given) > 1:
+        raise _core.InputError("threshold: several kinds are given; expected one")
+    times_task = None
+    if threshold_times_task is not None:
+        times_task, task = threshold_times_task[0], task or threshold_times_task[1]
+    return {
+        **threshold_options(rules, task, threshold_cd_m2, threshold_times_mean, times_task),
+        "task": None if task is None else (task.direction, math.radians(task.opening_deg)),
+        "search_angle_rad": rules.search_angle_rad if search_angle_rad is None else search_angle_rad,
+        "peak_cd_m2": rules.peak_cd_m2 if peak_cd_m2 == "rules" else peak_cd_m2,
+        "below_sight": below_sight or rules.below_sight,
+        "up_as_given": rules.up_as_given,
+        "dgp_fit": dgp_fit or rules.dgp_fit,
+        "centre": rules.centre,
+    }
+
+
+def rules_named(name: str) -> GlareRules:
+    """Give the rules of that name."""
+    for known, rules in RULES.items():
+        if known == name:
+            return rules
+    raise _core.InputError(f"rules: {name!r}; expected one of {', '.join(RULES)}")

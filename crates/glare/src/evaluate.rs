@@ -1,6 +1,7 @@
 //! From a picture to a report.
 
 use crate::blocks::sampling_error;
+use crate::checks;
 use crate::class::{ClassVerdict, GlareClass};
 use crate::detect::{self, Head};
 use crate::dgp::{LOWEST_VALID_EV_LUX, VALID_DGP, low_light_factor};
@@ -19,6 +20,14 @@ use sunpeak_scene::Picture;
 ///
 /// Fails if the picture has no view, a view without an eye, or pixels that are not numbers of light.
 pub fn evaluate(picture: &Picture, options: &GlareOptions) -> Result<GlareReport> {
+    evaluate_with_pixels(picture, options).map(|(report, _)| report)
+}
+
+/// The same, and the pixels of each source (indices of the picture; none of exact ones), in the order of the report's.
+pub fn evaluate_with_pixels(
+    picture: &Picture,
+    options: &GlareOptions,
+) -> Result<(GlareReport, Vec<Vec<usize>>)> {
     options.check()?;
     let mut warnings = Vec::new();
     let mut field = Field::new(picture)?;
@@ -42,9 +51,11 @@ pub fn evaluate(picture: &Picture, options: &GlareOptions) -> Result<GlareReport
     let terms = options.dgp_fit.terms(seen.ev_lux, seen.contrast_sum());
     let dgp = terms.dgp() * options.low_light_factor(seen.ev_lux);
     let [of_sampling, of_input] = [&sampling, &input].map(|intervals| dgp_interval(dgp, intervals.as_ref()));
+    warnings.extend(checks::warnings(&field, &seen.sources, seen.ev_lux, options.ev_lux.is_some()));
     warn_about_validity(terms.dgp(), seen.ev_lux, survey.coverage, options, &mut warnings);
 
-    Ok(GlareReport {
+    let indices = pixels.iter().map(|pixels| pixels.iter().map(|pixel| pixel.index).collect()).collect();
+    let report = GlareReport {
         dgp,
         dgp_interval: of_sampling,
         verdict: ClassVerdict::of(dgp, half_widths(dgp, [of_sampling, of_input])),
@@ -66,7 +77,8 @@ pub fn evaluate(picture: &Picture, options: &GlareOptions) -> Result<GlareReport
         background_cd_m2: seen.background_cd_m2(),
         sources: with_parts(seen.sources, terms.contrast),
         warnings,
-    })
+    };
+    Ok((report, indices))
 }
 
 /// Exact sources above the threshold, as glare sources.

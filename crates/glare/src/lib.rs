@@ -10,6 +10,7 @@
 
 mod behind;
 mod blocks;
+mod checks;
 mod class;
 mod cluster;
 mod detect;
@@ -28,7 +29,7 @@ mod zones;
 
 pub use class::{ClassVerdict, GlareClass};
 pub use dgp::{DgpFit, DgpTerms, daylight_glare_probability, low_light_factor};
-pub use evaluate::evaluate;
+pub use evaluate::{evaluate, evaluate_with_pixels};
 pub use metrics::Metrics;
 pub use options::{GlareOptions, SourceCentre, TaskZone, Threshold, Tolerances};
 pub use position_index::{BelowSight, position_index};

@@ -1,13 +1,15 @@
 //! Glare of a picture.
 
+use crate::arrays::{Numbers, directions, numbers};
 use crate::error::{InputError, OrRaise};
 use crate::picture::PyPicture;
+use numpy::{PyArray2, PyReadonlyArray2, ndarray};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use sunpeak_core::Vec3;
 use sunpeak_glare::{
     BelowSight, ClassVerdict, DgpFit, GlareClass, GlareOptions, GlareReport, Intervals, Source, SourceCentre,
-    TaskZone, Threshold, Tolerances, evaluate,
+    TaskZone, Threshold, Tolerances, evaluate, evaluate_with_pixels, position_index,
 };
 
 /// A round zone: unit vector towards its centre, full opening angle [rad].
@@ -25,6 +27,37 @@ pub fn glare<'py>(
     let all = fields(py, &report)?;
     all.set_item("edgps", options.ev_lux.map(|_| report.dgp_terms.dgp()))?;
     Ok(all)
+}
+
+/// Which source each pixel belongs to (h, w): 1 for the worst, 0 for none. Exact ones have no pixels.
+#[pyfunction]
+pub fn glare_sources<'py>(
+    py: Python<'py>,
+    picture: &PyPicture,
+    options: &Bound<'py, PyDict>,
+) -> PyResult<Bound<'py, PyArray2<u32>>> {
+    let options = glare_options(options)?;
+    let (_, sources) = py.detach(|| evaluate_with_pixels(&picture.0, &options)).or_raise()?;
+    let (height, width) = (picture.0.height, picture.0.width);
+    let mut numbers = ndarray::Array2::zeros((height, width));
+    for (number, pixels) in (1..).zip(sources) {
+        pixels.iter().for_each(|index| numbers[[index / width, index % width]] = number);
+    }
+    Ok(PyArray2::from_owned_array(py, numbers))
+}
+
+/// Position index (n,) of directions (n, 3) for an eye that looks along `sight`.
+#[pyfunction]
+pub fn position_indices<'py>(
+    py: Python<'py>,
+    towards: PyReadonlyArray2<'py, f64>,
+    sight: [f64; 3],
+    up: [f64; 3],
+    below: &str,
+) -> PyResult<Numbers<'py>> {
+    let (sight, up, below) = (Vec3::from_array(sight).normalize(), Vec3::from_array(up), below_sight(below)?);
+    let index = |direction: Vec3| position_index(direction, sight, up, below);
+    Ok(numbers(py, directions(&towards, "directions")?.into_iter().map(index).collect()))
 }
 
 /// The options from their names in Rust; what is not there has its default.

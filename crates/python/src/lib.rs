@@ -29,7 +29,7 @@ mod _core {
     #[pymodule_export]
     use super::fabric::fabric_xml;
     #[pymodule_export]
-    use super::glare::glare;
+    use super::glare::{glare, glare_sources, position_indices};
     #[pymodule_export]
     use super::picture::PyPicture;
     #[pymodule_export]

@@ -4,6 +4,7 @@ from typing import Annotated
 
 import typer
 
+from sunpeak.cli import glare_compare, glare_draw
 from sunpeak.cli import glare_options as options
 from sunpeak.cli.default_command import DEFAULT, DefaultCommandGroup
 from sunpeak.cli.glare_show import show
@@ -12,6 +13,8 @@ from sunpeak.comfort import glare
 from sunpeak.pictures import Picture
 
 app = typer.Typer(cls=DefaultCommandGroup, help="Glare numbers of a picture.", rich_markup_mode="rich")
+app.command("compare")(glare_compare.command)
+app.command("draw")(glare_draw.command)
 
 
 @app.command(DEFAULT)
@@ -44,7 +47,8 @@ def command(
 ) -> None:
     """Vertical illuminance, daylight glare probability and other glare ratings of a picture.
 
-    Suns that the picture knows exactly count with their own size.
+    Suns that the picture knows exactly count with their own size. `sunpeak glare compare A.hdr B.hdr` says why a number
+    changed, `sunpeak glare draw PICTURE` shows the sources.
 
     [dim]$[/dim] [cyan]sunpeak glare out.hdr[/cyan]
     """
