@@ -54,9 +54,10 @@ fmt: $(VENV)/.installed ## Format everything
 	$(BIN)/ruff check --fix-only .
 	$(BIN)/ruff format .
 
-bench: build ## Benchmarks: rays per second against the bare hierarchy, samples per second
+bench: build ## Benchmarks: rays per second against the bare hierarchy, samples per second, glare of a large picture
 	$(CARGO) bench --locked $(CRATES) --bench '*'
 	$(BIN)/python benches/demo_room.py
+	$(BIN)/python benches/glare_picture.py
 
 docs: ## The crates' documentation, into target/doc
 	$(CARGO) doc --locked $(CRATES) --no-deps

@@ -25,8 +25,8 @@ class Answer:
     sources: int
 
 
-def ask_evalglare(radiance: Radiance, path: Path) -> Answer:
-    *table, line = radiance.run("evalglare", "-d", path).decode().strip().splitlines()
+def ask_evalglare(radiance: Radiance, path: Path, *options: str) -> Answer:
+    *table, line = radiance.run("evalglare", "-d", *options, path).decode().strip().splitlines()
     names, values = line.split(":")
     return Answer(dict(zip(names.split(","), map(float, values.split()), strict=True)), len(table) - 1)
 
@@ -119,6 +119,24 @@ def test_drawn_pictures(kind: str, name: str, radiance: Radiance, tmp_path: Path
     assert report.dgp == pytest.approx(answer.numbers["dgp"], abs=0.002)
     if kind == "a":
         check(sp.glare(picture), answer)
+
+
+def test_thresholds_task_zone_and_split(radiance: Radiance, tmp_path: Path) -> None:
+    """The same questions in both languages. A task zone is a place in pixels from the lower left, and an angle."""
+    path = tmp_path / "drawn.hdr"
+    draw("many things", "a").save(path)
+    picture = sp.Picture.load(path)
+    assert picture.view is not None
+    x, y, z = picture.view.rays(SIZE, SIZE).directions[SIZE - 1 - 200, 300].tolist()
+    task = sp.Task((x, y, z), float(np.degrees(0.5)))
+    for options, stated in (
+        (["-b", "5"], {"threshold_times_mean": 5.0}),
+        (["-b", "3000"], {"threshold_cd_m2": 3000.0}),
+        (["-x"], {"peak_cd_m2": None}),
+        (["-Y", "10000"], {"peak_cd_m2": 10_000.0}),
+        (["-t", "300", "200", "0.5", "-b", "9"], {"threshold_times_task": (9.0, task)}),
+    ):
+        check(sp.glare(picture, rules="evalglare-3", **stated), ask_evalglare(radiance, path, *options))
 
 
 @pytest.mark.parametrize("rules", ["sunpeak", "evalglare-3"])

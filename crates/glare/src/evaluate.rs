@@ -1,5 +1,6 @@
 //! From a picture to a report.
 
+use crate::BelowSight;
 use crate::blocks::sampling_error;
 use crate::checks;
 use crate::class::{ClassVerdict, GlareClass};
@@ -34,20 +35,13 @@ pub fn evaluate_with_pixels(
     let suns = exact::take_out(&mut field, &mut warnings);
     let zones = Zones::new(field.sight, options.task_zone());
     let survey = survey(&field, &zones)?;
+    let search = Search::new(&field, &survey, &zones, &suns, options)?;
+    let pixels: Vec<&[FieldPixel]> = search.found.iter().map(|(_, pixels)| &pixels[..]).collect();
+    let seen = seen(search.sources(), &survey, &suns, options);
 
-    let mean = survey.whole.luminance().unwrap_or(0.0);
-    let (threshold_cd_m2, rule) = detect::threshold(options, mean, &zones.luminances(&survey, &[]))?;
-    let found = detect::sources(&field, threshold_cd_m2, options)?;
-    let head = Head { field: &field, options };
-    let mut found: Vec<(Source, Vec<FieldPixel>)> = found;
-    found.extend(glaring_suns(&head, &suns, threshold_cd_m2).into_iter().map(|sun| (sun, Vec::new())));
-    found.sort_by(|(a, _), (b, _)| b.weight().total_cmp(&a.weight()));
-    let pixels: Vec<&[FieldPixel]> = found.iter().map(|(_, pixels)| &pixels[..]).collect();
-
-    let seen = seen(found.iter().map(|(source, _)| *source).collect(), &survey, &suns, options);
-    let error = sampling_error(&field, threshold_cd_m2, &pixels)?;
-    let sampling = uncertainty::sampling(&seen, error.as_ref(), threshold_cd_m2, options);
-    let input = uncertainty::input(&seen, &head, options);
+    let error = sampling_error(&field, search.threshold_cd_m2, &pixels)?;
+    let sampling = uncertainty::sampling(&seen, error.as_ref(), search.threshold_cd_m2, options);
+    let input = uncertainty::input(&seen, &Head { field: &field, options }, options);
     let terms = options.dgp_fit.terms(seen.ev_lux, seen.contrast_sum());
     let dgp = terms.dgp() * options.low_light_factor(seen.ev_lux);
     let [of_sampling, of_input] = [&sampling, &input].map(|intervals| dgp_interval(dgp, intervals.as_ref()));
@@ -68,8 +62,8 @@ pub fn evaluate_with_pixels(
         class: GlareClass::of(dgp),
         ev_lux: seen.ev_lux,
         ev_sources_lux: seen.ev_sources_lux,
-        threshold_cd_m2,
-        rule: describe(&rule, options, !suns.is_empty()),
+        threshold_cd_m2: search.threshold_cd_m2,
+        rule: describe(&search.rule, options, !suns.is_empty()),
         mean_luminance_cd_m2: seen.mean_luminance_cd_m2,
         median_luminance_cd_m2: survey.median_luminance,
         zones: zones.luminances(&survey, &suns),
@@ -79,6 +73,37 @@ pub fn evaluate_with_pixels(
         warnings,
     };
     Ok((report, indices))
+}
+
+/// What was looked for, and what was found.
+struct Search {
+    threshold_cd_m2: f64,
+    /// The threshold in words.
+    rule: String,
+    /// Sources and their pixels, the worst first; exact ones have none.
+    found: Vec<(Source, Vec<FieldPixel>)>,
+}
+
+impl Search {
+    fn new(
+        field: &Field,
+        survey: &Survey,
+        zones: &Zones,
+        suns: &[VisibleSource],
+        options: &GlareOptions,
+    ) -> Result<Self> {
+        let mean = survey.whole.luminance().unwrap_or(0.0);
+        let (threshold_cd_m2, rule) = detect::threshold(options, mean, &zones.luminances(survey, &[]))?;
+        let mut found = detect::sources(field, threshold_cd_m2, options)?;
+        let exact = glaring_suns(&Head { field, options }, suns, threshold_cd_m2);
+        found.extend(exact.into_iter().map(|sun| (sun, Vec::new())));
+        found.sort_by(|(a, _), (b, _)| b.weight().total_cmp(&a.weight()));
+        Ok(Self { threshold_cd_m2, rule, found })
+    }
+
+    fn sources(&self) -> Vec<Source> {
+        self.found.iter().map(|(source, _)| *source).collect()
+    }
 }
 
 /// Exact sources above the threshold, as glare sources.
@@ -144,6 +169,11 @@ fn describe(rule: &str, options: &GlareOptions, has_suns: bool) -> String {
     if has_suns {
         text += ", suns by the picture's exact sources";
     }
+    text += match options.below_sight {
+        BelowSight::Evalglare3 => ", position index below the line of sight as evalglare 3",
+        BelowSight::IwataOsterhaus => ", position index below the line of sight as at the side",
+        BelowSight::IwataTokura => ", position index below the line of sight by Iwata and Tokura",
+    };
     if let Some(least) = options.least_solid_angle_sr {
         text += &format!(", none smaller than {least} sr");
     }

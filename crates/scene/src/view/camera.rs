@@ -95,9 +95,10 @@ impl Camera {
                 if theta > PI {
                     return None;
                 }
+                let (sine, cosine) = theta.sin_cos();
                 // sin(theta) / theta, 1 in the middle.
-                let shrink = if theta > 0.0 { theta.sin() / theta } else { 1.0 };
-                [u * shrink, v * shrink, theta.cos()]
+                let shrink = if theta > 0.0 { sine / theta } else { 1.0 };
+                [u * shrink, v * shrink, cosine]
             }
             ViewKind::PlanisphericFisheye => {
                 let z = (1.0 - r2) / (1.0 + r2);
