@@ -39,34 +39,61 @@ pub(crate) fn sampling_error(
     let errors = field.picture.block_errors.as_ref().filter(|errors| errors.fits(field.width, field.height));
     let Some(errors) = errors else { return Ok(None) };
     let blocks = blocks(field, errors, threshold)?;
-    let mut left: Vec<f64> = vec![1.0; blocks.len()];
-    let mut owners = BTreeMap::new();
-    let mut source_flux = Vec::new();
-    for (source, pixels) in pixels.iter().enumerate() {
-        let mut variance = 0.0;
-        for (block, flux) in flux_by_block(field, errors, pixels) {
+    let mut shares = Shares { left: vec![1.0; blocks.len()], owners: BTreeMap::new() };
+    let take = |(source, pixels): (usize, &&[FieldPixel])| {
+        let taken = shares.take(source, &blocks, flux_by_block(field, errors, pixels));
+        let error = |(block, share): (usize, f64)| {
+            share * errors.luminance_cd_m2[block] * blocks[block].solid_angle_sr
+        };
+        root_of_squares(taken.into_iter().map(error))
+    };
+    let source_flux = pixels.iter().enumerate().map(take).collect();
+    let background = blocks.iter().zip(&shares.left).zip(&errors.luminance_cd_m2);
+    Ok(Some(SamplingError {
+        background_lux: root_of_squares(
+            background.map(|((block, left), error)| left * error * block.projected_sr),
+        ),
+        source_flux,
+        source_solid_angle_sr: shares.solid_angle_errors(&blocks, pixels.len()),
+    }))
+}
+
+fn root_of_squares(values: impl Iterator<Item = f64>) -> f64 {
+    values.map(|value| value * value).sum::<f64>().sqrt()
+}
+
+/// Who gets how much of the error of each block.
+struct Shares {
+    /// What is left to the background.
+    left: Vec<f64>,
+    /// The largest share of a source so far, and the source.
+    owners: BTreeMap<usize, (f64, usize)>,
+}
+
+impl Shares {
+    /// Give a source its shares: blocks and parts of their light.
+    fn take(&mut self, source: usize, blocks: &[Block], flux: BTreeMap<usize, f64>) -> Vec<(usize, f64)> {
+        let mut taken = Vec::new();
+        for (block, flux) in flux {
             let share = (flux / blocks[block].flux).min(1.0);
-            left[block] = (left[block] - share).max(0.0);
-            variance += (share * errors.luminance_cd_m2[block] * blocks[block].solid_angle_sr).powi(2);
-            let owner = owners.entry(block).or_insert((share, source));
+            self.left[block] = (self.left[block] - share).max(0.0);
+            let owner = self.owners.entry(block).or_insert((share, source));
             if share > owner.0 {
                 *owner = (share, source);
             }
+            taken.push((block, share));
         }
-        source_flux.push(variance.sqrt());
+        taken
     }
-    let mut solid_angle_variance = vec![0.0; pixels.len()];
-    for (block, (_, source)) in owners {
-        solid_angle_variance[source] += blocks[block].passing_variance;
+
+    /// Standard errors of the sources' solid angles: pixels at the threshold belong to the source with most light in their block.
+    fn solid_angle_errors(&self, blocks: &[Block], sources: usize) -> Vec<f64> {
+        let mut variance = vec![0.0; sources];
+        for (&block, &(_, source)) in &self.owners {
+            variance[source] += blocks[block].passing_variance;
+        }
+        variance.into_iter().map(f64::sqrt).collect()
     }
-    let background = blocks.iter().zip(&left).zip(&errors.luminance_cd_m2);
-    let variance: f64 =
-        background.map(|((block, left), error)| (left * error * block.projected_sr).powi(2)).sum();
-    Ok(Some(SamplingError {
-        background_lux: variance.sqrt(),
-        source_flux,
-        source_solid_angle_sr: solid_angle_variance.into_iter().map(f64::sqrt).collect(),
-    }))
 }
 
 /// How much of a source's light each block holds.

@@ -164,7 +164,7 @@ fn half_widths(middle: f64, intervals: [[f64; 2]; 2]) -> [f64; 2] {
 fn describe(rule: &str, options: &GlareOptions, has_suns: bool) -> String {
     let mut text = format!("{rule}, one source within {} rad", options.search_angle_rad / 2.0);
     if let Some(peak) = options.peak_cd_m2 {
-        text += &format!(", peaks above {peak} cd/m² apart");
+        text += &format!(", pixels above {peak} cd/m² split off");
     }
     if has_suns {
         text += ", suns by the picture's exact sources";
