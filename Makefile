@@ -54,10 +54,11 @@ fmt: $(VENV)/.installed ## Format everything
 	$(BIN)/ruff check --fix-only .
 	$(BIN)/ruff format .
 
-bench: build ## Benchmarks: name, ours, theirs, ratio for rays, sampling, through, large files
+bench: build ## Benchmarks: name, ours, theirs, ratio for rays, sampling, through, large files, glare
 	$(CARGO) bench --locked $(CRATES) --bench '*'
 	$(BIN)/python benches/demo_room.py
 	$(BIN)/python benches/large_files.py
+	$(BIN)/python benches/glare_picture.py
 
 docs: ## The crates' documentation, into target/doc
 	$(CARGO) doc --locked $(CRATES) --no-deps

@@ -204,6 +204,31 @@ class TestPicture:
         expected = 5.87e-5 * ev + 0.0918 * np.log10(1 + luminance**2 * omega / ev**1.87) + 0.16
         assert report.dgp == pytest.approx(expected, abs=1e-3)
 
+    def test_rules_by_name_and_one_by_one(self) -> None:
+        """Two lamps: above and below 2000 cd/m², both above 5 times the mean of a dark task."""
+        view = sp.View.parse(FISHEYE)
+        directions = view.rays(300, 300).directions
+        luminance = np.full((300, 300), 50.0)
+        for azimuth, value in ((20, 9000.0), (-20, 1500.0)):
+            lamp = [np.sin(np.radians(azimuth)), np.cos(np.radians(azimuth)), 0.0]
+            luminance[directions @ np.array(lamp) > np.cos(np.radians(4))] = value
+        picture = sp.Picture.of(np.repeat(luminance[..., None] / 179, 3, axis=2), view)
+        assert len(sp.glare(picture).sources) == 1
+        task = sp.Task.at(view, 0, -30, 20)
+        old = sp.glare(picture, rules="wienold-2006", task=task)
+        assert (len(old.sources), old.threshold_cd_m2) == (2, pytest.approx(250))
+        assert old.zones.task_cd_m2 == pytest.approx(50)
+        assert old.zones.ratios_to_task()["task"] == 1
+        own = sp.glare(picture, rules=sp.GlareRules(threshold_cd_m2=1000, threshold_times_mean=None))
+        assert len(own.sources) == 2
+        assert own.dgp == pytest.approx(own.dgp_offset + own.dgp_ev_term + sum(s.dgp_part for s in own.sources))
+        wider = sp.glare(picture, least_solid_angle_sr=0.1)
+        assert wider.sources[0].solid_angle_sr == pytest.approx(0.1)
+        assert wider.sources[0].illuminance_lux == sp.glare(picture).sources[0].illuminance_lux
+        assert sp.glare(picture, ev_lux=900).edgps == sp.glare(picture, ev_lux=900).dgp
+        with pytest.raises(sp.InputError, match="wienold-2006"):
+            sp.glare(picture, rules="mine")  # type: ignore[arg-type]
+
     def test_a_picture_without_view_cannot_glare(self) -> None:
         with pytest.raises(sp.InputError, match="view"):
             sp.glare(sp.Picture.of(np.ones((4, 4, 3))))

@@ -38,6 +38,8 @@ def files(folder: Path) -> set[str]:
 COMMANDS = [
     "render",
     "glare",
+    "glare compare",
+    "glare draw",
     "trace",
     "demo",
     "bsdf",

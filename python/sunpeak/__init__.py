@@ -8,8 +8,10 @@ from sunpeak._core import InputError, __version__
 from sunpeak.bsdf_plot import plot_bsdf
 from sunpeak.bsdf_report import BsdfReport
 from sunpeak.bsdf_verdict import Verdict
-from sunpeak.comfort import GlareReport, GlareSource, Task, glare
+from sunpeak.comfort import glare
 from sunpeak.fabrics import Fabric
+from sunpeak.glare_report import GlareReport, GlareSource, ZoneLuminances
+from sunpeak.glare_rules import GlareRules, RulesName, Task
 from sunpeak.pictures import ExactSource, Picture
 from sunpeak.rendering import World, render, trace
 from sunpeak.scattering import Bsdf, Evidence, Samples, direction, side_of_ray
@@ -23,11 +25,13 @@ __all__ = [
     "ExactSource",
     "Fabric",
     "GlareReport",
+    "GlareRules",
     "GlareSource",
     "InputError",
     "Picture",
     "Place",
     "Rays",
+    "RulesName",
     "Samples",
     "Scene",
     "Sky",
@@ -36,6 +40,7 @@ __all__ = [
     "Verdict",
     "View",
     "World",
+    "ZoneLuminances",
     "__version__",
     "direction",
     "glare",

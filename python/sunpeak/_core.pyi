@@ -123,18 +123,11 @@ class Picture:
     def header(self) -> list[str]: ...
     def sources(self) -> _Floats: ...
 
-def glare(
-    picture: Picture,
-    threshold: float,
-    threshold_kind: str,
-    task: tuple[tuple[float, float, float], float] | None,
-    search_angle_rad: float,
-    peak_cd_m2: float | None,
-    ev_lux: float | None,
-    low_light: bool,
-    below_sight: str,
-    relative_error: float,
-) -> dict[str, Any]: ...
+def glare(picture: Picture, options: dict[str, Any]) -> dict[str, Any]: ...
+def glare_sources(picture: Picture, options: dict[str, Any]) -> npt.NDArray[np.uint32]: ...
+def position_indices(
+    towards: _Floats, sight: tuple[float, float, float], up: tuple[float, float, float], below: str
+) -> _Floats: ...
 def fabric_xml(
     basis: str,
     openness: float,
@@ -161,6 +154,7 @@ def render(
     seed: int,
     threads: int | None,
     max_bounces: int | None,
+    goal: tuple[str, float] | None,
     progress: Callable[[int, int], None] | None,
 ) -> Picture: ...
 def trace(

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -40,6 +41,7 @@ def render(
     samples: int | None = None,
     time: float | None = None,
     error: float | None = None,
+    until: Literal["class"] | tuple[Literal["dgp", "ev"], float] | None = None,
     seed: int = 0,
     threads: int | None = None,
     max_bounces: int | None = None,
@@ -49,19 +51,23 @@ def render(
 
     It takes `samples` paths for each pixel (64 unless told otherwise), or as many as fit in `time` seconds, or as many
     as bring the standard error below `error` [-]: the root mean square over blocks of 8 by 8 pixels of the error of
-    their luminance, over the mean luminance of all (0.01 is 1 %). With several, whatever comes first ends it. The same
-    seed and number of samples give the same picture on any number of `threads` (None: all cores). `max_bounces` limits
-    diffuse bounces, as Radiance's `-ab`; None is no limit. `peak` says which part of `aBSDF` tables goes straight
-    through; a `World` has chosen already.
+    their luminance, over the mean luminance of all (0.01 is 1 %). `until` asks for a glare number instead: `"class"`
+    until the comfort class cannot change, `("dgp", 0.005)` or `("ev", 0.01)` until the 95 % interval of DGP, or that
+    of Ev over Ev, is no wider than that to each side. With several, whatever comes first ends it.
+
+    The same seed and number of samples give the same picture on any number of `threads` (None: all cores).
+    `max_bounces` limits diffuse bounces, as Radiance's `-ab`; None is no limit. `peak` says which part of `aBSDF`
+    tables goes straight through; a `World` has chosen already.
 
     `progress` shows a bar on standard error, or is a function that is called with the work done and in all. Ctrl-C
     stops the rendering (`KeyboardInterrupt`).
     """
     width, height = size
     world = compiled(scene, peak)
+    goal = (until, 0.0) if isinstance(until, str) else until
     with reporting(progress, "rendering") as callback:
         picture = _core.render(
-            world._core, view._core, width, height, samples, time, error, seed, threads, max_bounces, callback
+            world._core, view._core, width, height, samples, time, error, seed, threads, max_bounces, goal, callback
         )
     return Picture(picture)
 

@@ -3,7 +3,6 @@
 use crate::field::Field;
 use std::collections::{BTreeMap, BTreeSet};
 use sunpeak_core::LUMINOUS_EFFICACY;
-use sunpeak_scene::Picture;
 
 /// An eight-bit mantissa (RGBE) holds a pixel to this share of its largest channel: what is left of a pixel after a sun was
 /// taken out is known no better.
@@ -27,70 +26,57 @@ pub(crate) enum Fit {
     Poor,
 }
 
-/// Take luminances [cd/m²] out of the pixels (positions in the field). Where no more is left than the pixel's own precision
-/// the pixels around say what lies behind. If the fit is poor they say so for all pixels that a resampled sun may have reached.
-pub(crate) fn uncover(
-    field: &mut Field,
-    picture: &Picture,
-    removed: &BTreeMap<usize, f64>,
-    place: &[Option<usize>],
-) -> Fit {
+/// Take luminances [cd/m²] out of pixels (indices of the picture). Where no more is left than the pixel's own precision the pixels
+/// around say what lies behind. If the fit is poor they say so for all pixels that a resampled sun may have reached.
+pub(crate) fn uncover(field: &mut Field, removed: &BTreeMap<usize, f64>) -> Fit {
     let mut unknown = BTreeSet::new();
     let mut fit = Fit::Good;
-    for (&i, &taken) in removed {
-        let pixel = &mut field.pixels[i];
-        let largest = picture.pixels[pixel.index].iter().fold(0.0_f32, |a, &b| a.max(b));
+    for (&index, &taken) in removed {
+        let largest = field.picture.pixels[index].iter().fold(0.0_f32, |a, &b| a.max(b));
         let precision = LUMINOUS_EFFICACY * f64::from(largest) * PIXEL_PRECISION;
-        let left = pixel.luminance_cd_m2 - taken;
+        let left = field.luminance(index) - taken;
         if left < -LARGEST_LACK * precision {
             fit = Fit::Poor;
         }
         if left <= precision {
-            unknown.insert(i);
+            unknown.insert(index);
         }
-        pixel.luminance_cd_m2 = left.max(0.0);
+        field.changed.insert(index, left.max(0.0));
     }
     if fit == Fit::Poor {
-        unknown = reach(field, removed, place);
+        unknown = reach(field, removed);
     }
-    fill(field, removed, &unknown, place);
+    fill(field, removed, &unknown);
     fit
 }
 
 /// The covered pixels and those near them.
-fn reach(field: &Field, removed: &BTreeMap<usize, f64>, place: &[Option<usize>]) -> BTreeSet<usize> {
-    let near = |&i: &usize| (0..=SPREAD).flat_map(move |radius| ring(field, i, radius));
-    removed.keys().flat_map(near).filter_map(|index| place[index]).collect()
+fn reach(field: &Field, removed: &BTreeMap<usize, f64>) -> BTreeSet<usize> {
+    let near = |&index: &usize| (0..=SPREAD).flat_map(move |radius| ring(field, index, radius));
+    removed.keys().flat_map(near).filter(|&index| field.pixel(index).is_some()).collect()
 }
 
 /// Give the unknown pixels the mean of the nearest ring of pixels that no sun reaches.
-fn fill(
-    field: &mut Field,
-    removed: &BTreeMap<usize, f64>,
-    unknown: &BTreeSet<usize>,
-    place: &[Option<usize>],
-) {
-    let is_clear = |i: &usize| !removed.contains_key(i) && !unknown.contains(i);
-    let around = |i: usize| {
+fn fill(field: &mut Field, removed: &BTreeMap<usize, f64>, unknown: &BTreeSet<usize>) {
+    let is_clear = |index: &usize| !removed.contains_key(index) && !unknown.contains(index);
+    let around = |index: usize| {
         (1..=WIDEST_RING).find_map(|radius| {
-            let clear: Vec<f64> = ring(field, i, radius)
-                .filter_map(|index| place[index])
+            let clear: Vec<f64> = ring(field, index, radius)
                 .filter(is_clear)
-                .map(|i| field.pixels[i].luminance_cd_m2)
+                .filter_map(|index| field.pixel(index))
+                .map(|pixel| pixel.luminance_cd_m2)
                 .collect();
             (!clear.is_empty()).then(|| clear.iter().sum::<f64>() / clear.len() as f64)
         })
     };
     let behind: Vec<_> = unknown.iter().filter_map(|&i| around(i).map(|luminance| (i, luminance))).collect();
-    for (i, luminance) in behind {
-        field.pixels[i].luminance_cd_m2 = luminance;
-    }
+    field.changed.extend(behind);
 }
 
-/// Picture indices of the pixels at exactly `radius` columns or rows from a pixel of the field.
-fn ring(field: &Field, i: usize, radius: usize) -> impl Iterator<Item = usize> + use<> {
+/// Indices of the pixels at exactly `radius` columns or rows from a pixel.
+fn ring(field: &Field, index: usize, radius: usize) -> impl Iterator<Item = usize> + use<> {
     let (width, height) = (field.width, field.height);
-    let (column, row) = (field.pixels[i].index % width, field.pixels[i].index / width);
+    let (column, row) = (index % width, index / width);
     let columns = column.saturating_sub(radius)..=(column + radius).min(width - 1);
     let rows = row.saturating_sub(radius)..=(row + radius).min(height - 1);
     rows.flat_map(move |r| columns.clone().map(move |c| (r, c)))

@@ -27,32 +27,33 @@ pub(crate) fn clusters(pixels: &[FieldPixel], width: usize, gap_rad: f64) -> Vec
 
 /// Join pixels that touch in the picture: nearly all the work in large sources, in one pass.
 fn join_neighbours(pixels: &[FieldPixel], width: usize, chord: f64, sets: &mut DisjointSets) {
-    let place: HashMap<usize, usize> = pixels.iter().enumerate().map(|(i, pixel)| (pixel.index, i)).collect();
+    let mut above = 0;
     for (i, pixel) in pixels.iter().enumerate() {
-        let left = (pixel.index % width > 0).then(|| pixel.index - 1);
-        let above = pixel.index.checked_sub(width);
-        for index in [left, above].into_iter().flatten() {
-            if let Some(&j) = place.get(&index)
-                && is_near(pixel, &pixels[j], chord)
-            {
-                sets.join(i, j);
-            }
+        if i > 0 && pixels[i - 1].index + 1 == pixel.index && pixel.index % width > 0 {
+            join_if_near(pixels, i, i - 1, chord, sets);
         }
+        // Both rows are walked along together.
+        while pixels[above].index + width < pixel.index {
+            above += 1;
+        }
+        if pixels[above].index + width == pixel.index {
+            join_if_near(pixels, i, above, chord, sets);
+        }
+    }
+}
+
+fn join_if_near(pixels: &[FieldPixel], i: usize, j: usize, chord: f64, sets: &mut DisjointSets) {
+    if is_near(&pixels[i], &pixels[j], chord) {
+        sets.join(i, j);
     }
 }
 
 /// Join pixels over gaps. Directions are sorted into cubes whose diagonal is the largest gap, so that a cube holds one
 /// source only, and only cubes up to two apart need a closer look.
 fn join_over_gaps(pixels: &[FieldPixel], chord: f64, sets: &mut DisjointSets) {
-    let edge = chord / 3.0_f64.sqrt();
-    let mut cubes: HashMap<[i32; 3], Vec<usize>> = HashMap::new();
-    for (i, pixel) in pixels.iter().enumerate() {
-        let key = (pixel.direction / edge).floor().to_array().map(|k| k as i32);
-        let members = cubes.entry(key).or_default();
-        if let Some(&first) = members.first() {
-            sets.join(i, first);
-        }
-        members.push(i);
+    let cubes = cubes(pixels, chord / 3.0_f64.sqrt());
+    for members in cubes.values() {
+        members.iter().for_each(|&member| sets.join(members[0], member));
     }
     for (key, members) in &cubes {
         for other in cubes_around(key).filter_map(|other| cubes.get(&other)) {
@@ -61,6 +62,21 @@ fn join_over_gaps(pixels: &[FieldPixel], chord: f64, sets: &mut DisjointSets) {
             }
         }
     }
+}
+
+/// The pixels in each cube of directions.
+fn cubes(pixels: &[FieldPixel], edge: f64) -> HashMap<[i32; 3], Vec<usize>> {
+    let mut cubes: HashMap<[i32; 3], Vec<usize>> = HashMap::new();
+    let key = |pixel: &FieldPixel| (pixel.direction / edge).floor().to_array().map(|k| k as i32);
+    let mut first = 0;
+    while first < pixels.len() {
+        // Pixels of a row mostly follow each other in the same cube.
+        let here = key(&pixels[first]);
+        let end = first + pixels[first..].iter().take_while(|pixel| key(pixel) == here).count();
+        cubes.entry(here).or_default().extend(first..end);
+        first = end;
+    }
+    cubes
 }
 
 /// Half of the cubes up to two steps away (the other half asks from its side).

@@ -1,10 +1,10 @@
 //! Suns that the picture knows exactly: out of their pixels, and sources of their own.
 
 use crate::behind::{self, Fit};
-use crate::field::Field;
+use crate::field::{Field, FieldPixel};
 use std::collections::BTreeMap;
 use sunpeak_core::{Vec3, luminance_cd_m2};
-use sunpeak_scene::{ExactSource, Picture, disc_coverage};
+use sunpeak_scene::{ExactSource, disc_coverage};
 
 /// The part of an exact source that lies in the picture, in front of the eye.
 #[derive(Clone, Copy, Debug)]
@@ -18,30 +18,26 @@ pub(crate) struct VisibleSource {
 }
 
 /// Take the picture's exact sources out of the field's pixels. Overlapping ones are taken out together.
-pub(crate) fn take_out(
-    field: &mut Field,
-    picture: &Picture,
-    warnings: &mut Vec<String>,
-) -> Vec<VisibleSource> {
-    let sources = &picture.exact_sources[..];
+pub(crate) fn take_out(field: &mut Field, warnings: &mut Vec<String>) -> Vec<VisibleSource> {
+    let sources = &field.picture.exact_sources[..];
     if sources.is_empty() {
         return Vec::new();
     }
-    let place = places(field);
     let mut removed = BTreeMap::new();
     let mut found = Vec::new();
     for source in sources {
-        let covered = covered_pixels(field, source, &place);
+        let covered = covered_pixels(field, source);
         let Some(visible) = visible_part(field, source, &covered) else {
             warnings.push(outside(source));
             continue;
         };
-        for &(i, share) in &covered {
-            *removed.entry(i).or_insert(0.0) += visible.luminance_cd_m2 * source.visible_fraction * share;
+        for (pixel, share) in &covered {
+            *removed.entry(pixel.index).or_insert(0.0) +=
+                visible.luminance_cd_m2 * source.visible_fraction * share;
         }
         found.push(visible);
     }
-    if behind::uncover(field, picture, &removed, &place) == Fit::Poor {
+    if behind::uncover(field, &removed) == Fit::Poor {
         warnings.push(
             "the pixels do not hold the exact sources that the header states (was the picture resampled or changed since?): the \
              sources count as stated, the pixels near them as those around"
@@ -51,26 +47,17 @@ pub(crate) fn take_out(
     found
 }
 
-/// Where each pixel of the picture stands in the field.
-fn places(field: &Field) -> Vec<Option<usize>> {
-    let mut place = vec![None; field.width * field.height];
-    for (i, pixel) in field.pixels.iter().enumerate() {
-        place[pixel.index] = Some(i);
-    }
-    place
-}
-
-/// The pixels (as positions in the field) that the source's disc covers, with their covered share.
-fn covered_pixels(field: &Field, source: &ExactSource, place: &[Option<usize>]) -> Vec<(usize, f64)> {
+/// The pixels in front of the eye that the source's disc covers, with their covered share.
+fn covered_pixels(field: &Field, source: &ExactSource) -> Vec<(FieldPixel, f64)> {
     disc_coverage(field.view, field.width, field.height, source.direction, source.solid_angle_sr)
         .into_iter()
-        .filter_map(|(index, share)| place[index].map(|i| (i, share)))
+        .filter_map(|(index, share)| field.pixel(index).map(|pixel| (pixel, share)))
         .collect()
 }
 
-fn visible_part(field: &Field, source: &ExactSource, covered: &[(usize, f64)]) -> Option<VisibleSource> {
+fn visible_part(field: &Field, source: &ExactSource, covered: &[(FieldPixel, f64)]) -> Option<VisibleSource> {
     let direction = source.direction.try_normalize()?;
-    let solid_angle = |&(i, share): &(usize, f64)| share * field.pixels[i].solid_angle_sr;
+    let solid_angle = |(pixel, share): &(FieldPixel, f64)| share * pixel.solid_angle_sr;
     let in_view: f64 = covered.iter().map(solid_angle).sum();
     let luminance = luminance_cd_m2(source.radiance);
     let is_light = [in_view, luminance, source.visible_fraction].iter().all(|&v| v > 0.0 && v.is_finite());
@@ -82,7 +69,7 @@ fn visible_part(field: &Field, source: &ExactSource, covered: &[(usize, f64)]) -
     let projected = if is_whole {
         source.solid_angle_sr * direction.dot(field.sight).max(0.0)
     } else {
-        covered.iter().map(|part| solid_angle(part) * field.pixels[part.0].cosine).sum()
+        covered.iter().map(|part| solid_angle(part) * part.0.cosine).sum()
     };
     Some(VisibleSource {
         direction,

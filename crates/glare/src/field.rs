@@ -1,6 +1,7 @@
 //! The picture as an eye sees it: luminance, solid angle and direction of each pixel in front.
 
-use std::f64::consts::PI;
+use std::collections::BTreeMap;
+use std::ops::Range;
 use sunpeak_core::{Error, Result, Rgb, Vec3, luminance_cd_m2};
 use sunpeak_scene::{Camera, Picture, View, ViewKind};
 
@@ -27,25 +28,32 @@ const RIM_PIXELS: f64 = 4.0;
 const RIM_POINTS: usize = 8;
 
 impl FieldPixel {
+    /// Is it near the rim of the hemisphere?
+    pub fn is_at_rim(&self) -> bool {
+        self.cosine < RIM_PIXELS * self.solid_angle_sr.sqrt()
+    }
+
     /// Illuminance at the eye [lx].
     pub fn illuminance_lux(&self) -> f64 {
         self.luminance_cd_m2 * self.solid_angle_sr * self.cosine
     }
 }
 
-/// All pixels in front of the eye, in picture order.
-#[derive(Debug)]
+/// A picture with a usable view. Nothing is copied: pixels are worked out when they are asked for.
 pub(crate) struct Field<'a> {
     pub view: &'a View,
+    pub picture: &'a Picture,
+    camera: Camera,
     /// Line of sight, unit.
     pub sight: Vec3,
     pub width: usize,
     pub height: usize,
-    pub pixels: Vec<FieldPixel>,
+    /// Luminances that differ from the picture's, by index: those from which a sun was taken out.
+    pub changed: BTreeMap<usize, f64>,
 }
 
 impl<'a> Field<'a> {
-    /// Fails if the picture has no view, or values that no light has.
+    /// Fails if the picture has no view that an eye could have, or not as many pixels as it says.
     pub fn new(picture: &'a Picture) -> Result<Self> {
         let view = usable_view(picture)?;
         let (width, height) = (picture.width, picture.height);
@@ -60,54 +68,55 @@ impl<'a> Field<'a> {
         let camera = Camera::new(view).ok_or_else(|| {
             Error::value("glare: the view's up vector (-vu) is parallel to its direction (-vd)")
         })?;
-        let mut field = Self { view, sight, width, height, pixels: Vec::new() };
-        for (index, &value) in picture.pixels.iter().enumerate() {
-            if let Some(mut pixel) = field.geometry(&camera, index) {
-                pixel.luminance_cd_m2 = luminance_of(value).map_err(|what| field.bad_pixel(index, &what))?;
-                field.pixels.push(pixel);
-            }
-        }
-        if field.pixels.is_empty() {
-            return Err(Error::value("glare: no pixel of the picture lies in front of its view"));
-        }
-        Ok(field)
+        Ok(Self { view, picture, camera, sight, width, height, changed: BTreeMap::new() })
     }
 
-    /// The pixel, still black, if its centre lies in front of the eye.
-    fn geometry(&self, camera: &Camera, index: usize) -> Option<FieldPixel> {
+    /// The pixel, if its centre lies in front of the eye.
+    pub fn pixel(&self, index: usize) -> Option<FieldPixel> {
+        self.with_luminance(index, self.luminance(index))
+    }
+
+    /// The pixel with a luminance that is known already.
+    pub fn with_luminance(&self, index: usize, luminance_cd_m2: f64) -> Option<FieldPixel> {
         let (column, row) = (index % self.width, index / self.width);
-        let [x, y] = self.picture_point(column as f64 + 0.5, row as f64 + 0.5);
-        let direction = camera.ray(x, y)?.direction;
-        let solid_angle_sr = camera.pixel_solid_angle(column, row, self.width, self.height);
+        let pixel = self.camera.pixel_ahead(column, row, self.width, self.height)?;
+        let (direction, solid_angle_sr) = (pixel.direction, pixel.solid_angle_sr);
         let centre_cosine = direction.dot(self.sight);
         if solid_angle_sr <= 0.0 || centre_cosine <= 0.0 {
             return None;
         }
         let cosine = if centre_cosine < RIM_PIXELS * solid_angle_sr.sqrt() {
-            self.mean_cosine(camera, column, row).unwrap_or(centre_cosine)
+            self.mean_cosine(column, row, solid_angle_sr).unwrap_or(centre_cosine)
         } else {
             centre_cosine
         };
-        Some(FieldPixel { index, direction, solid_angle_sr, luminance_cd_m2: 0.0, cosine })
+        Some(FieldPixel { index, direction, solid_angle_sr, luminance_cd_m2, cosine })
     }
 
-    /// Mean cosine over the solid angle of a pixel.
-    fn mean_cosine(&self, camera: &Camera, column: usize, row: usize) -> Option<f64> {
-        let (mut sum, mut weight) = (0.0, 0.0);
+    /// Mean cosine over the solid angle of a pixel: that of a grid of points, weighted with the density of solid angle there; `None` for
+    /// views other than fisheyes.
+    fn mean_cosine(&self, column: usize, row: usize, solid_angle_sr: f64) -> Option<f64> {
         let step = 1.0 / RIM_POINTS as f64;
+        let place = |start: usize, i: usize| start as f64 + (i as f64 + 0.5) * step;
+        let mut projected = 0.0;
+        let mut seen = false;
         for i in 0..RIM_POINTS {
             for j in 0..RIM_POINTS {
-                let (left, top) = (column as f64 + i as f64 * step, row as f64 + j as f64 * step);
-                let [x0, y1] = self.picture_point(left, top);
-                let [x1, y0] = self.picture_point(left + step, top + step);
-                if let Some(ray) = camera.ray((x0 + x1) / 2.0, (y0 + y1) / 2.0) {
-                    let solid_angle = camera.solid_angle([x0, x1], [y0, y1]);
-                    sum += solid_angle * ray.direction.dot(self.sight).max(0.0);
-                    weight += solid_angle;
+                let [x, y] = self.picture_point(place(column, i), place(row, j));
+                if let Some(point) = self.camera.density(x, y) {
+                    projected += point.solid_angle_sr * point.direction.dot(self.sight).max(0.0);
+                    seen = true;
                 }
             }
         }
-        (weight > 0.0).then(|| sum / weight)
+        let area = step * step / (self.width * self.height) as f64;
+        seen.then(|| projected * area / solid_angle_sr)
+    }
+
+    /// Direction of a place in pixels from the top left.
+    pub fn towards(&self, column: f64, row: f64) -> Option<Vec3> {
+        let [x, y] = self.picture_point(column, row);
+        self.camera.ray(x, y).map(|ray| ray.direction)
     }
 
     /// A place in pixels from the top left, as the picture point of a view.
@@ -115,36 +124,27 @@ impl<'a> Field<'a> {
         [column / self.width as f64, 1.0 - row / self.height as f64]
     }
 
-    fn bad_pixel(&self, index: usize, what: &str) -> Error {
+    /// Luminance of a pixel [cd/m²] without the suns that were taken out.
+    pub fn luminance(&self, index: usize) -> f64 {
+        self.changed.get(&index).copied().unwrap_or_else(|| luminance_of(self.picture.pixels[index]))
+    }
+
+    /// Luminances [cd/m²] of the pixels in a range.
+    pub fn luminances(&self, range: Range<usize>) -> impl Iterator<Item = (usize, f64)> {
+        let mut changed = self.changed.range(range.clone()).peekable();
+        range.map(move |index| match changed.next_if(|&(&at, _)| at == index) {
+            Some((_, &luminance)) => (index, luminance),
+            None => (index, luminance_of(self.picture.pixels[index])),
+        })
+    }
+
+    /// The message on a pixel that holds what light does not.
+    pub fn bad_pixel(&self, index: usize) -> Error {
         let (column, row) = (index % self.width, index / self.width);
+        let [r, g, b] = self.picture.pixels[index];
         Error::value(format!(
-            "glare: the picture's pixel in column {column}, row {row} (from 0, top left) is {what}; expected radiances of 0 or more"
+            "glare: the picture's pixel in column {column}, row {row} (from 0, top left) is {r} {g} {b}; expected radiances of 0 or more"
         ))
-    }
-
-    /// Vertical illuminance at the eye [lx].
-    pub fn illuminance_lux(&self) -> f64 {
-        self.pixels.iter().map(FieldPixel::illuminance_lux).sum()
-    }
-
-    /// Share of the hemisphere in front, weighted as for illuminance, that the picture covers.
-    pub fn coverage(&self) -> f64 {
-        self.pixels.iter().map(|p| p.solid_angle_sr * p.cosine).sum::<f64>() / PI
-    }
-
-    /// Mean luminance [cd/m²] over the solid angle of the pixels that are chosen; `None` if there are none.
-    pub fn mean_luminance(&self, chosen: impl Fn(&FieldPixel) -> bool) -> Option<f64> {
-        let (mut sum, mut weight) = (0.0, 0.0);
-        for pixel in self.pixels.iter().filter(|&pixel| chosen(pixel)) {
-            sum += pixel.luminance_cd_m2 * pixel.solid_angle_sr;
-            weight += pixel.solid_angle_sr;
-        }
-        (weight > 0.0).then(|| sum / weight)
-    }
-
-    /// The brightest pixel's luminance [cd/m²].
-    pub fn max_luminance(&self) -> f64 {
-        self.pixels.iter().map(|pixel| pixel.luminance_cd_m2).fold(0.0, f64::max)
     }
 }
 
@@ -164,11 +164,6 @@ fn usable_view(picture: &Picture) -> Result<&View> {
     Ok(view)
 }
 
-fn luminance_of(value: [f32; 3]) -> std::result::Result<f64, String> {
-    let rgb = Rgb::from(value.map(f64::from));
-    let luminance = luminance_cd_m2(rgb);
-    if !rgb.is_finite() || luminance < 0.0 {
-        return Err(format!("{} {} {}", value[0], value[1], value[2]));
-    }
-    Ok(luminance)
+fn luminance_of(value: [f32; 3]) -> f64 {
+    luminance_cd_m2(Rgb::from(value.map(f64::from)))
 }

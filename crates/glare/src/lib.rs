@@ -9,6 +9,8 @@
 //! [`GlareOptions`] with evalglare's value as its default.
 
 mod behind;
+mod blocks;
+mod checks;
 mod class;
 mod cluster;
 mod detect;
@@ -16,13 +18,20 @@ mod dgp;
 mod evaluate;
 mod exact;
 mod field;
+pub(crate) mod metrics;
+mod normal;
 mod options;
 mod position_index;
 mod report;
+mod survey;
+mod uncertainty;
+mod zones;
 
-pub use class::GlareClass;
-pub use dgp::{daylight_glare_probability, low_light_factor};
-pub use evaluate::evaluate;
-pub use options::{GlareOptions, TaskZone, Threshold};
+pub use class::{ClassVerdict, GlareClass};
+pub use dgp::{DgpFit, DgpTerms, daylight_glare_probability, low_light_factor};
+pub use evaluate::{evaluate, evaluate_with_pixels};
+pub use metrics::Metrics;
+pub use options::{GlareOptions, SourceCentre, TaskZone, Threshold, Tolerances};
 pub use position_index::{BelowSight, position_index};
-pub use report::{GlareReport, Source};
+pub use report::{GlareReport, Source, ZoneLuminances};
+pub use uncertainty::Intervals;

@@ -35,14 +35,7 @@ fn picture(view: View, size: usize, luminance: impl Fn(Vec3) -> f64) -> Picture 
         [(luminance / 179.0) as f32; 3]
     };
     let pixels = (0..size * size).map(value).collect();
-    Picture {
-        width: size,
-        height: size,
-        pixels,
-        view: Some(view),
-        header: Vec::new(),
-        exact_sources: Vec::new(),
-    }
+    Picture { pixels, view: Some(view), ..Picture::new(size, size) }
 }
 
 fn fisheye(size: usize, luminance: impl Fn(Vec3) -> f64) -> Picture {

@@ -6,6 +6,7 @@ mod bsdf_report;
 mod error;
 mod fabric;
 mod glare;
+mod goal;
 mod picture;
 mod render;
 mod scene;
@@ -29,7 +30,7 @@ mod _core {
     #[pymodule_export]
     use super::fabric::fabric_xml;
     #[pymodule_export]
-    use super::glare::glare;
+    use super::glare::{glare, glare_sources, position_indices};
     #[pymodule_export]
     use super::picture::PyPicture;
     #[pymodule_export]

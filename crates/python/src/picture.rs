@@ -41,6 +41,7 @@ impl PyPicture {
             view: view.map(|view| view.0.clone()),
             header,
             exact_sources: exact_sources(&sources)?,
+            ..Picture::new(0, 0)
         };
         Ok(Self(Arc::new(picture)))
     }

@@ -3,13 +3,17 @@
 use crate::arrays::{Rows, rows, vectors};
 use crate::bsdf::peak_rule;
 use crate::error::{InputError, OrRaise};
+use crate::goal::GlareGoal;
 use crate::picture::PyPicture;
 use crate::scene::{PyScene, PyView};
 use crate::watch::run_watched;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use std::sync::Arc;
-use sunpeak_render::{RenderOptions, World, WorldOptions, render_picture, trace_irradiance, trace_radiance};
+use sunpeak_render::{
+    PictureJudge, RenderOptions, World, WorldOptions, render_until, trace_irradiance, trace_radiance,
+};
+use sunpeak_scene::Picture;
 
 /// A scene compiled for rendering.
 #[pyclass(frozen, name = "World", module = "sunpeak._core")]
@@ -51,11 +55,15 @@ pub fn render(
     seed: u64,
     threads: Option<usize>,
     max_bounces: Option<u32>,
+    goal: Option<(String, f64)>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<PyPicture> {
     let options = options(samples, time_s, error, seed, threads, max_bounces);
+    let goal = goal.map(|(kind, value)| GlareGoal::of(&kind, value)).transpose()?;
     let picture = run_watched(py, progress.as_ref(), |control| {
-        render_picture(&world.0, &view.0, width, height, &options, control)
+        let judge = goal.map(|goal| move |picture: &Picture| goal.is_reached(picture));
+        let judge = judge.as_ref().map(|judge| judge as PictureJudge);
+        render_until(&world.0, &view.0, (width, height), &options, control, judge)
     })?;
     Ok(PyPicture(Arc::new(picture)))
 }

@@ -84,8 +84,8 @@ impl ExactSuns {
     }
 
     /// For the picture's header and pixels.
-    pub fn into_sources(self) -> Vec<ExactSource> {
-        self.sources
+    pub fn sources(&self) -> Vec<ExactSource> {
+        self.sources.clone()
     }
 }
 

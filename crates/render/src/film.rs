@@ -2,11 +2,11 @@
 
 use crate::exact_sun::ExactSuns;
 use crate::integrator::{Integrator, Limits};
-use crate::passes::{Means, Reports, estimate};
+use crate::passes::{Means, Reports, estimate_until};
 use crate::shapes::Ray;
 use crate::{RenderOptions, World};
-use sunpeak_core::{Control, Error, Result, Rgb, Sampler};
-use sunpeak_scene::{Camera, ExactSource, Picture, View, disc_coverage};
+use sunpeak_core::{Control, Error, LUMINOUS_EFFICACY, Result, Rgb, Sampler};
+use sunpeak_scene::{BlockErrors, Camera, ExactSource, Picture, View, disc_coverage};
 
 /// Render a picture of `width` by `height` pixels; each pixel is the mean over its area (a box filter).
 ///
@@ -22,6 +22,24 @@ pub fn render_picture(
     options: &RenderOptions,
     control: &Control,
 ) -> Result<Picture> {
+    render_until(world, view, (width, height), options, control, None)
+}
+
+/// Says whether a picture is good enough.
+pub type PictureJudge<'a> = &'a dyn Fn(&Picture) -> Result<bool>;
+
+/// The same, until a judge is content with the picture so far: it is asked after each pass from which errors can be told.
+///
+/// # Errors
+/// As [`render_picture`], and those of the judge.
+pub fn render_until(
+    world: &World,
+    view: &View,
+    (width, height): (usize, usize),
+    options: &RenderOptions,
+    control: &Control,
+    judge: Option<PictureJudge>,
+) -> Result<Picture> {
     view.check()?;
     if width == 0 || height == 0 {
         return Err(Error::value(format!("a picture of {width} by {height} pixels has none")));
@@ -30,26 +48,22 @@ pub fn render_picture(
     let exact_suns = options.exact_suns.then(|| ExactSuns::find(world, view, width, height, options.seed));
     let film = Film { camera, width, height, seed: options.seed };
     let integrator = Integrator { world, limits: Limits::of(options), exact_suns: exact_suns.as_ref() };
-    let reports = Reports { control, rays: &world.rays };
-    let means = estimate(
+    let sources = exact_suns.as_ref().map_or_else(Vec::new, ExactSuns::sources);
+    let picture = |means: &Means| film.picture(world, view, options, means, &sources);
+    let is_enough = |judge: PictureJudge, means: &Means| match means.group_errors {
+        Some(_) => judge(&picture(means)),
+        None => Ok(false),
+    };
+    let judge_means = judge.map(|judge| move |means: &Means| is_enough(judge, means));
+    let means = estimate_until(
         width * height,
         options,
-        reports,
+        Reports { control, rays: &world.rays },
         |pixel| film.block(pixel),
         |pixel, s| film.sample(&integrator, pixel, s),
+        judge_means.as_ref().map(|judge| judge as _),
     )?;
-    let mut picture = Picture {
-        width,
-        height,
-        header: vec![software(), settings(world, options, &means)],
-        pixels: means.values.iter().map(|v| v.as_vec3().to_array()).collect(),
-        view: Some(view.clone()),
-        exact_sources: exact_suns.map_or_else(Vec::new, ExactSuns::into_sources),
-    };
-    for source in picture.exact_sources.clone() {
-        add(&mut picture, view, &source);
-    }
-    Ok(picture)
+    Ok(picture(&means))
 }
 
 /// The pixels and how rays go through them.
@@ -67,6 +81,36 @@ impl Film {
     fn block(&self, pixel: usize) -> u32 {
         let (column, row) = (pixel % self.width, pixel / self.width);
         (row / BLOCK * self.width.div_ceil(BLOCK) + column / BLOCK) as u32
+    }
+
+    /// The picture that means make, exact sources put in.
+    fn picture(
+        &self,
+        world: &World,
+        view: &View,
+        options: &RenderOptions,
+        means: &Means,
+        sources: &[ExactSource],
+    ) -> Picture {
+        let block_errors = means.group_errors.as_ref().map(|errors| BlockErrors {
+            edge: BLOCK,
+            columns: self.width.div_ceil(BLOCK),
+            luminance_cd_m2: errors.iter().map(|error| LUMINOUS_EFFICACY * error).collect(),
+        });
+        let mut picture = Picture {
+            width: self.width,
+            height: self.height,
+            header: vec![software(), settings(world, options, means)],
+            pixels: means.values.iter().map(|v| v.as_vec3().to_array()).collect(),
+            view: Some(view.clone()),
+            exact_sources: sources.to_vec(),
+            block_errors,
+            ..Picture::new(0, 0)
+        };
+        for source in sources {
+            add(&mut picture, view, source);
+        }
+        picture
     }
 
     fn sample(&self, integrator: &Integrator, pixel: usize, index: u64) -> Rgb {

@@ -63,7 +63,7 @@ mod testing;
 mod transmit;
 mod world;
 
-pub use film::render_picture;
+pub use film::{PictureJudge, render_picture, render_until};
 pub use options::{DEFAULT_MAX_DEPTH, DEFAULT_SAMPLES, RenderOptions, WorldOptions};
 pub use sensor::{trace_irradiance, trace_radiance};
 pub use world::World;

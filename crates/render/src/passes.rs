@@ -26,7 +26,12 @@ pub(crate) struct Means {
     pub samples: u32,
     /// Relative standard error, where a goal was set for it (see [`RenderOptions::error`]).
     pub error: Option<f64>,
+    /// Standard error of the mean of each group, luminous, once enough passes are done.
+    pub group_errors: Option<Vec<f64>>,
 }
+
+/// Says after a pass whether the means are good enough.
+pub(crate) type Judge<'a> = &'a dyn Fn(&Means) -> Result<bool>;
 
 /// Where finished work is reported.
 #[derive(Clone, Copy)]
@@ -44,27 +49,55 @@ pub(crate) fn estimate(
     group: impl Fn(usize) -> u32,
     sample: impl Fn(usize, u64) -> Rgb + Sync,
 ) -> Result<Means> {
-    let goal = Goal::new(items, options)?;
+    estimate_until(items, options, reports, group, sample, None)
+}
+
+/// The same, until a judge is content too.
+pub(crate) fn estimate_until(
+    items: usize,
+    options: &RenderOptions,
+    reports: Reports,
+    group: impl Fn(usize) -> u32,
+    sample: impl Fn(usize, u64) -> Rgb + Sync,
+    judge: Option<Judge>,
+) -> Result<Means> {
+    let goal = Goal::new(items, options, judge.is_some())?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads.unwrap_or(0))
         .build()
         .map_err(|e| Error::value(format!("cannot start {:?} threads: {e}", options.threads)))?;
     goal.announce(reports.control);
-    let error = options.error.map(|_| ErrorEstimate::new((0..items).map(group).collect()));
-    pool.install(|| run(items, &goal, reports, error, &sample))
+    let groups = (0..items).map(group).collect();
+    let mut run = Run {
+        goal: &goal,
+        reports,
+        sums: vec![Rgb::ZERO; items],
+        done: 0,
+        error: ErrorEstimate::new(groups),
+    };
+    while let Some(pass) = goal.next_pass(run.done) {
+        pool.install(|| run.pass(pass, &sample))?;
+        if run.is_good_enough(judge)? {
+            break;
+        }
+    }
+    Ok(run.means())
 }
 
-fn run(
-    items: usize,
-    goal: &Goal,
-    reports: Reports,
-    mut error: Option<ErrorEstimate>,
-    sample: &(impl Fn(usize, u64) -> Rgb + Sync),
-) -> Result<Means> {
-    let mut sums = vec![Rgb::ZERO; items];
-    let mut done = 0;
-    while let Some(pass) = goal.next_pass(done) {
-        sums.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, sums)| {
+/// What is known so far.
+struct Run<'a> {
+    goal: &'a Goal,
+    reports: Reports<'a>,
+    sums: Vec<Rgb>,
+    /// Samples behind each sum.
+    done: u32,
+    error: ErrorEstimate,
+}
+
+impl Run<'_> {
+    fn pass(&mut self, pass: u32, sample: &(impl Fn(usize, u64) -> Rgb + Sync)) -> Result<()> {
+        let (done, reports, goal) = (self.done, self.reports, self.goal);
+        self.sums.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, sums)| {
             if reports.control.is_stopped() {
                 return;
             }
@@ -76,16 +109,27 @@ fn run(
             goal.report(reports.control, sums.len() as u64 * u64::from(pass));
         });
         reports.control.check()?;
-        done += pass;
-        if let Some(error) = &mut error {
-            error.add(&sums, done);
-            if error.relative().is_some_and(|e| goal.error.is_some_and(|goal| e <= goal)) {
-                break;
-            }
+        self.done += pass;
+        self.error.add(&self.sums, self.done);
+        Ok(())
+    }
+
+    fn is_good_enough(&self, judge: Option<Judge>) -> Result<bool> {
+        let by_error = self.goal.error.is_some_and(|goal| self.error.relative().is_some_and(|e| e <= goal));
+        match judge {
+            Some(judge) if !by_error => judge(&self.means()),
+            _ => Ok(by_error),
         }
     }
-    let values = sums.into_iter().map(|sum| sum / f64::from(done)).collect();
-    Ok(Means { values, samples: done, error: error.and_then(|e| e.relative()) })
+
+    fn means(&self) -> Means {
+        Means {
+            values: self.sums.iter().map(|&sum| sum / f64::from(self.done)).collect(),
+            samples: self.done,
+            error: self.goal.error.and_then(|_| self.error.relative()),
+            group_errors: self.error.standard_errors(),
+        }
+    }
 }
 
 /// When to stop.
@@ -100,7 +144,7 @@ struct Goal {
 }
 
 impl Goal {
-    fn new(items: usize, options: &RenderOptions) -> Result<Self> {
+    fn new(items: usize, options: &RenderOptions, has_judge: bool) -> Result<Self> {
         if options.samples == Some(0) {
             return Err(Error::value("the number of samples is 0; it must be at least 1"));
         }
@@ -116,7 +160,8 @@ impl Goal {
                 Some(Duration::try_from_secs_f64(s).map_err(|_| Error::value(format!("the time is {s} s")))?)
             }
         };
-        let unlimited = if time.is_some() || options.error.is_some() { u32::MAX } else { DEFAULT_SAMPLES };
+        let has_goal = time.is_some() || options.error.is_some() || has_judge;
+        let unlimited = if has_goal { u32::MAX } else { DEFAULT_SAMPLES };
         let samples = options.samples.unwrap_or(unlimited);
         Ok(Self {
             items: items as u64,

@@ -44,18 +44,25 @@ impl ErrorEstimate {
         self.samples = samples;
     }
 
-    /// Root mean square of the groups' standard errors, relative to the mean over all groups; `None` while that cannot be told.
-    pub fn relative(&self) -> Option<f64> {
+    /// Standard error of each group's mean; `None` while that cannot be told.
+    pub fn standard_errors(&self) -> Option<Vec<f64>> {
         if self.passes < LEAST_PASSES || self.samples < LEAST_SAMPLES {
             return None;
         }
-        let (n, groups) = (f64::from(self.samples), self.sums.len() as f64);
+        let n = f64::from(self.samples);
         // The variance of one sample from the means of passes of unequal length, then that of the mean of all samples.
-        let variance_of_mean =
-            |square: f64, sum: f64| ((square - sum * sum / n) / f64::from(self.passes - 1)).max(0.0) / n;
-        let variance: f64 =
-            self.squares.iter().zip(&self.sums).map(|(&square, &sum)| variance_of_mean(square, sum)).sum();
-        let mean = self.sums.iter().sum::<f64>() / n / groups;
+        let error = |(&square, &sum): (&f64, &f64)| {
+            (((square - sum * sum / n) / f64::from(self.passes - 1)).max(0.0) / n).sqrt()
+        };
+        Some(self.squares.iter().zip(&self.sums).map(error).collect())
+    }
+
+    /// Root mean square of the groups' standard errors, relative to the mean over all groups; `None` while that cannot be told.
+    pub fn relative(&self) -> Option<f64> {
+        let errors = self.standard_errors()?;
+        let groups = errors.len() as f64;
+        let variance: f64 = errors.iter().map(|error| error * error).sum();
+        let mean = self.sums.iter().sum::<f64>() / f64::from(self.samples) / groups;
         Some(if mean > 0.0 { (variance / groups).sqrt() / mean } else { 0.0 })
     }
 }

@@ -24,8 +24,8 @@ mod view;
 pub use disc_coverage::disc_coverage;
 pub use files::LoadOptions;
 pub use load::load_primitives;
-pub use picture::{ExactSource, Picture};
+pub use picture::{BlockErrors, ExactSource, Picture};
 pub use scene::{
     BsdfMaterial, Material, Modifier, ModifierId, ModifierKind, Pattern, Scene, Shape, Surface, Ward,
 };
-pub use view::{Camera, View, ViewKind, ViewRay};
+pub use view::{Camera, PixelRay, View, ViewKind, ViewRay};

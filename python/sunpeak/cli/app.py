@@ -26,7 +26,7 @@ app = typer.Typer(
 app.command("demo", rich_help_panel="Results")(demo.command)
 app.command("render", rich_help_panel="Results")(render.command)
 app.command("trace", rich_help_panel="Results")(trace.command)
-app.command("glare", rich_help_panel="Results")(glare.command)
+app.add_typer(glare.app, name="glare", rich_help_panel="Results")
 app.add_typer(bsdf.app, name="bsdf", rich_help_panel="Input")
 app.add_typer(sky.app, name="sky", rich_help_panel="Input")
 app.add_typer(study.app, name="study", rich_help_panel="Results")

@@ -1,67 +1,80 @@
 """`sunpeak glare`: glare numbers of a picture."""
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich import box
-from rich.console import Console
-from rich.table import Table
 
+from sunpeak.cli import glare_compare, glare_draw
+from sunpeak.cli import glare_options as options
+from sunpeak.cli.default_command import DEFAULT, DefaultCommandGroup
+from sunpeak.cli.glare_show import show
 from sunpeak.cli.output import emit_json, note
-from sunpeak.comfort import PEAK_CD_M2, SEARCH_ANGLE_RAD, BelowSight, GlareReport, glare
+from sunpeak.comfort import glare
 from sunpeak.pictures import Picture
 
-SEARCH = "How sources are found"
+app = typer.Typer(cls=DefaultCommandGroup, help="Glare numbers of a picture.", rich_markup_mode="rich")
+app.command("compare")(glare_compare.command)
+app.command("draw")(glare_draw.command)
 
 
+@app.command(DEFAULT)
 def command(
-    picture: Annotated[Path, typer.Argument(help="Fisheye picture, Radiance format, with VIEW= in its header.")],
-    threshold: Annotated[
-        float | None,
-        typer.Option(metavar="CD/M2", help="Luminance above which a pixel may glare.", rich_help_panel=SEARCH),
-    ] = None,
-    times_mean: Annotated[
-        float | None,
-        typer.Option(help="Instead: so many times the mean luminance of the view.", rich_help_panel=SEARCH),
-    ] = None,
-    search_angle: Annotated[
-        float,
-        typer.Option(metavar="RAD", help="Opening angle within which pixels are one source.", rich_help_panel=SEARCH),
-    ] = SEARCH_ANGLE_RAD,
-    peak_luminance: Annotated[
-        float,
-        typer.Option(
-            metavar="CD/M2", help="Pixels above this are sources of their own; 0: none are.", rich_help_panel=SEARCH
-        ),
-    ] = PEAK_CD_M2,
-    below_sight: Annotated[
-        BelowSight, typer.Option(help="Position index below the line of sight.", rich_help_panel=SEARCH)
-    ] = "iwata-osterhaus",
+    picture: options.PictureFile,
+    rules: options.Rules = "sunpeak",
+    threshold: options.Threshold = None,
+    times_mean: options.TimesMean = None,
+    times_task: options.TimesTask = None,
+    task: options.TaskZone = None,
+    search_angle: options.SearchAngle = None,
+    peak_luminance: options.PeakLuminance = None,
+    least_solid_angle: options.LeastSolidAngle = None,
+    below_sight: options.BelowSightOption = None,
     ev: Annotated[
-        float | None, typer.Option(metavar="LUX", help="Vertical illuminance, if known from elsewhere.")
+        float | None, typer.Option(metavar="LUX", help="Vertical illuminance.", rich_help_panel=options.SEEN)
     ] = None,
+    source_distance: Annotated[
+        float | None,
+        typer.Option(
+            metavar="M", help="How far away sources are, for UGR of small ones.", rich_help_panel=options.SEEN
+        ),
+    ] = None,
+    through: options.Through = None,
+    sky: options.Sky = None,
+    position: options.Position = 0.0,
     low_light: Annotated[bool, typer.Option("--low-light", help="Lower DGP in dim scenes (Wienold 2012).")] = False,
     relative_error: Annotated[float, typer.Option(help="Standard error of the picture, for the interval.")] = 0.0,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object on standard output.")] = False,
 ) -> None:
-    """Vertical illuminance and daylight glare probability of a picture.
+    """Vertical illuminance, daylight glare probability and other glare ratings of a picture.
 
-    Suns that the picture knows exactly count with their own size.
+    Suns that the picture knows exactly count with their own size. `sunpeak glare compare A.hdr B.hdr` says why a number
+    changed, `sunpeak glare draw PICTURE` shows the sources.
 
     [dim]$[/dim] [cyan]sunpeak glare out.hdr[/cyan]
     """
-    if threshold is not None and times_mean is not None:
-        raise typer.BadParameter("--threshold and --times-mean exclude each other")
+    if sum(value is not None for value in (threshold, times_mean, times_task)) > 1:
+        raise typer.BadParameter("--threshold, --times-mean and --times-task exclude each other")
+    if times_task is not None and task is None:
+        raise typer.BadParameter("--times-task needs --task")
+    loaded = Picture.load(picture)
+    zone = options.task_of(loaded, task)
     report = glare(
-        Picture.load(picture),
+        loaded,
+        rules=rules,
         threshold_cd_m2=threshold,
         threshold_times_mean=times_mean,
+        threshold_times_task=None if times_task is None or zone is None else (times_task, zone),
         search_angle_rad=search_angle,
-        peak_cd_m2=peak_luminance or None,
-        ev_lux=ev,
-        low_light=low_light,
+        peak_cd_m2=options.peak_of(peak_luminance),
+        least_solid_angle_sr=least_solid_angle,
         below_sight=below_sight,
+        task=zone,
+        ev_lux=ev,
+        source_distance_m=source_distance,
+        low_light=low_light,
+        tolerance_through=through or 0.0,
+        tolerance_sky=sky or 0.0,
+        tolerance_position_deg=position,
         relative_error=relative_error,
     )
     for warning in report.warnings:
@@ -70,36 +83,3 @@ def command(
         emit_json(report.to_dict())
     else:
         show(report)
-
-
-def show(report: GlareReport) -> None:
-    """Print the report for people."""
-    console = Console(highlight=False)
-    low, high = report.dgp_interval
-    interval = f" ({low:.3f} to {high:.3f})" if high > low else ""
-    console.print(f"DGP         [bold]{report.dgp:.3f}[/bold]{interval}  {report.glare_class}")
-    console.print(f"Ev          {report.ev_lux:.0f} lx, {report.ev_sources_lux:.0f} lx of it from glare sources")
-    console.print(f"brightest   {report.max_luminance_cd_m2:.4g} cd/m²")
-    console.print(f"background  {report.background_cd_m2:.4g} cd/m²")
-    console.print(report.rule, style="dim", soft_wrap=True)
-    if report.sources:
-        console.print(sources(report))
-
-
-def sources(report: GlareReport) -> Table:
-    """Table of the sources, the worst first."""
-    table = Table(box=box.SIMPLE_HEAD)
-    for heading in ("luminance, cd/m²", "size, sr", "position index", "at the eye, lx", "share of L²ω/P²"):
-        table.add_column(heading, justify="right")
-    table.add_column("")
-    total = sum(source.weight for source in report.sources)
-    for source in report.sources:
-        table.add_row(
-            f"{source.luminance_cd_m2:.4g}",
-            f"{source.solid_angle_sr:.3g}",
-            f"{source.position_index:.2f}",
-            f"{source.illuminance_lux:.1f}",
-            f"{100 * source.weight / total:.1f} %",
-            "exact" if source.exact else f"{source.pixels} pixels",
-        )
-    return table

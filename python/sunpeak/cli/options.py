@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from sunpeak.cli.values import parse_percent
+from sunpeak.cli.values import parse_goal, parse_percent
 from sunpeak.scattering import Peak
 from sunpeak.scenes import Scene
 
@@ -29,6 +29,17 @@ Error = Annotated[
         parser=parse_percent,
         metavar="PCT",
         help="Go on until the luminance of blocks (or sensors) has this standard error, in percent of the mean.",
+        rich_help_panel=SAMPLING,
+    ),
+]
+PictureGoal = Annotated[
+    Any,
+    typer.Option(
+        "--error",
+        parser=parse_goal,
+        metavar="PCT|class|dgp:…|ev:…",
+        help="Go on until blocks of pixels have this standard error in percent of the mean, until the comfort class "
+        "cannot change (class), or until the 95 % interval of DGP (dgp:0.005) or Ev (ev:1%) is so narrow.",
         rich_help_panel=SAMPLING,
     ),
 ]

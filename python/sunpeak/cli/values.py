@@ -44,6 +44,22 @@ def parse_percent(text: str) -> float:
     return percent / 100
 
 
+def parse_goal(text: str) -> float | Literal["class"] | tuple[Literal["dgp", "ev"], float]:
+    """`1` or `1%` as 0.01; `class`; `dgp:0.005`; `ev:1%` as `("ev", 0.01)`."""
+    kind, colon, value = text.strip().partition(":")
+    if kind == "class" and not colon:
+        return "class"
+    if kind == "ev" and colon:
+        return "ev", parse_percent(value)
+    if kind == "dgp" and colon:
+        numbers = parse_numbers(value)
+        if len(numbers) == 1 and numbers[0] > 0:
+            return "dgp", numbers[0]
+    elif not colon:
+        return parse_percent(text)
+    raise typer.BadParameter(f"{text!r}; expected a percentage, class, dgp:0.005 or ev:1%")
+
+
 def parse_place(text: str) -> Place:
     """`37.7,-122.2` or with the elevation in metres, as a place."""
     numbers = parse_numbers(text)

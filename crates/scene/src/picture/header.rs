@@ -1,6 +1,6 @@
 //! Header lines that mean something.
 
-use super::ExactSource;
+use super::{BlockErrors, ExactSource, errors};
 use crate::{View, raw::parse_real, view::apply_header_line};
 use std::fmt::Write;
 use sunpeak_core::{Rgb, Vec3};
@@ -23,7 +23,11 @@ pub struct Header {
     pub format: Format,
     /// What the pixels were multiplied by.
     pub exposure: Rgb,
+    /// The factors of the `EXPOSURE=` lines.
+    pub exposures: Vec<f64>,
     pub view: Option<View>,
+    /// Lines of block errors, without their key.
+    pub errors: Vec<String>,
     pub sources: Vec<ExactSource>,
     /// All lines that are not turned into something else.
     pub others: Vec<String>,
@@ -31,7 +35,15 @@ pub struct Header {
 
 impl Default for Header {
     fn default() -> Self {
-        Self { format: Format::Rgbe, exposure: Rgb::ONE, view: None, sources: Vec::new(), others: Vec::new() }
+        Self {
+            format: Format::Rgbe,
+            exposure: Rgb::ONE,
+            exposures: Vec::new(),
+            view: None,
+            errors: Vec::new(),
+            sources: Vec::new(),
+            others: Vec::new(),
+        }
     }
 }
 
@@ -50,10 +62,13 @@ impl Header {
             let [exposure] =
                 positive(value).ok_or_else(|| format!("expected a positive number in \"{line}\""))?;
             self.exposure *= exposure;
+            self.exposures.push(exposure);
         } else if let Some(value) = line.strip_prefix("COLORCORR=") {
             let factors =
                 positive(value).ok_or_else(|| format!("expected three positive numbers in \"{line}\""))?;
             self.exposure *= Rgb::from_array(factors);
+        } else if let Some(value) = line.strip_prefix(errors::KEY) {
+            self.errors.push(value.to_owned());
         } else if let Some(value) = line.strip_prefix(SOURCE_KEY) {
             self.sources.push(source(value).ok_or_else(|| {
                 format!("expected dx dy dz solid_angle_sr R G B visible_fraction in \"{line}\"")
@@ -91,8 +106,13 @@ fn source(text: &str) -> Option<ExactSource> {
 }
 
 /// The header of a picture in Radiance's units, up to the resolution line.
-pub fn text(others: &[String], view: Option<&View>, sources: &[ExactSource]) -> String {
-    const OURS: [&str; 5] = ["FORMAT=", "EXPOSURE=", "COLORCORR=", "VIEW=", SOURCE_KEY];
+pub fn text(
+    others: &[String],
+    view: Option<&View>,
+    sources: &[ExactSource],
+    block_errors: Option<&BlockErrors>,
+) -> String {
+    const OURS: [&str; 6] = ["FORMAT=", "EXPOSURE=", "COLORCORR=", "VIEW=", SOURCE_KEY, errors::KEY];
     let mut text = String::from("#?RADIANCE\n");
     // A line with a line end in it is several; an empty one would end the header, "#?" would begin another.
     let lines = others.iter().flat_map(|line| line.lines()).filter(|line| !line.is_empty());
@@ -113,6 +133,10 @@ pub fn text(others: &[String], view: Option<&View>, sources: &[ExactSource]) -> 
             "{SOURCE_KEY} {} {} {} {solid_angle} {} {} {} {visible}",
             d.x, d.y, d.z, r.x, r.y, r.z
         );
+    }
+    for line in block_errors.map(BlockErrors::lines).unwrap_or_default() {
+        text.push_str(&line);
+        text.push('\n');
     }
     text.push_str("FORMAT=32-bit_rle_rgbe\n\n");
     text

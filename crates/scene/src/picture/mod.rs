@@ -3,12 +3,15 @@
 //! The codec is our own: those that exist drop header lines (`VIEW=`, several `EXPOSURE=`), know one orientation of eight
 //! and not XYZE, and decode to other values than Radiance does (by half a step).
 
+mod errors;
 mod header;
 mod orientation;
 mod read;
 mod rgbe;
 mod scanline;
 mod write;
+
+pub use errors::BlockErrors;
 
 use crate::View;
 use sunpeak_core::{Rgb, Vec3, luminance_cd_m2};
@@ -24,11 +27,15 @@ pub struct Picture {
     pub pixels: Vec<[f32; 3]>,
     /// The view; `None` if the header has none (or a picture was cropped or rotated since).
     pub view: Option<View>,
-    /// Header lines (without the first `#?RADIANCE`, `FORMAT=`, `VIEW=`, `EXPOSURE=`, `COLORCORR=` and `SUNPEAK_SOURCE=`), as
+    /// Header lines (without the first `#?RADIANCE`, `FORMAT=`, `VIEW=`, `EXPOSURE=`, `COLORCORR=`, `SUNPEAK_SOURCE=` and `SUNPEAK_ERROR=`), as
     /// read.
     pub header: Vec<String>,
     /// Suns seen through peaks, through glass, in mirrors or directly, exactly.
     pub exact_sources: Vec<ExactSource>,
+    /// What the header said in its `EXPOSURE=` lines, in order; undone in `pixels`, and not written again.
+    pub exposures: Vec<f64>,
+    /// Statistical error, if it is known.
+    pub block_errors: Option<BlockErrors>,
 }
 
 /// A sun disc in a picture, known exactly. Its pixels hold `radiance * visible_fraction * covered share of the
@@ -48,8 +55,16 @@ pub struct ExactSource {
 impl Picture {
     /// A black picture.
     pub fn new(width: usize, height: usize) -> Self {
-        let pixels = vec![[0.0; 3]; width * height];
-        Self { width, height, pixels, view: None, header: Vec::new(), exact_sources: Vec::new() }
+        Self {
+            width,
+            height,
+            pixels: vec![[0.0; 3]; width * height],
+            view: None,
+            header: Vec::new(),
+            exact_sources: Vec::new(),
+            exposures: Vec::new(),
+            block_errors: None,
+        }
     }
 
     /// Luminance of each pixel [cd/m²], top row first.

@@ -45,8 +45,11 @@ impl Orientation {
         if self.rows_along_x { (self.height, self.width) } else { (self.width, self.height) }
     }
 
-    /// Pixels in the file's order to the top row first, left to right.
-    pub fn upright<T: Copy>(&self, pixels: &[T]) -> Vec<T> {
+    /// Pixels in the file's order to the top row first, left to right. Nothing is copied where they stand so already.
+    pub fn upright<T: Copy>(&self, pixels: Vec<T>) -> Vec<T> {
+        if self.rows_along_x && self.y_falls && !self.x_falls {
+            return pixels;
+        }
         let (_, length) = self.rows();
         let mut result = Vec::with_capacity(pixels.len());
         for y in 0..self.height {

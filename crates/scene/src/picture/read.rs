@@ -1,7 +1,7 @@
 //! Radiance pictures in.
 
 use super::{
-    Picture,
+    BlockErrors, Picture,
     header::{Format, Header},
     orientation::Orientation,
     rgbe, scanline,
@@ -21,7 +21,6 @@ impl Picture {
         let mut lines = Lines { rest: bytes, name, line: 0 };
         let header = lines.header()?;
         let orientation = lines.orientation()?;
-        let pixels = read_pixels(lines.rest, &orientation).map_err(|message| lines.error(message))?;
         let convert = |pixel: [u8; 4]| {
             let value = Rgb::from_array(rgbe::decode(pixel)) / header.exposure;
             let value = match header.format {
@@ -30,14 +29,18 @@ impl Picture {
             };
             value.as_vec3().to_array()
         };
-        let pixels = pixels.into_iter().map(convert).collect::<Vec<_>>();
+        let pixels =
+            read_pixels(lines.rest, &orientation, convert).map_err(|message| lines.error(message))?;
+        let (width, height) = (orientation.width, orientation.height);
         Ok(Self {
-            width: orientation.width,
-            height: orientation.height,
-            pixels: orientation.upright(&pixels),
+            width,
+            height,
+            pixels: orientation.upright(pixels),
             view: header.view,
             header: header.others,
             exact_sources: header.sources,
+            exposures: header.exposures,
+            block_errors: BlockErrors::from_lines(&header.errors, width, height),
         })
     }
 }
@@ -87,12 +90,25 @@ impl Lines<'_> {
     }
 }
 
-fn read_pixels(mut bytes: &[u8], orientation: &Orientation) -> std::result::Result<Vec<[u8; 4]>, String> {
+/// Pixels to a byte in the run-length code: four runs of 127 bytes in two each.
+const TIGHTEST: usize = 16;
+
+fn read_pixels(
+    mut bytes: &[u8],
+    orientation: &Orientation,
+    convert: impl Fn([u8; 4]) -> [f32; 3],
+) -> std::result::Result<Vec<[f32; 3]>, String> {
     let (count, length) = orientation.rows();
     let mut pixels = Vec::new();
     for row in 1..=count {
         let read = scanline::read(&mut bytes, length);
-        pixels.extend(read.map_err(|message| format!("row {row} of {count}: {message}"))?);
+        let read = read.map_err(|message| format!("row {row} of {count}: {message}"))?;
+        if row == 1 {
+            // As much as the rest of the file can hold at its tightest, so that pixels need not be moved as they grow.
+            let fits = bytes.len() / (length / TIGHTEST + 1) + 1 >= count;
+            pixels.reserve_exact(if fits { count * length } else { 0 });
+        }
+        pixels.extend(read.into_iter().map(&convert));
     }
     Ok(pixels)
 }

@@ -29,7 +29,9 @@ impl Picture {
                 "a picture of {width} x {height} with {pixels} pixels cannot be written"
             )));
         }
-        let mut bytes = header::text(&self.header, self.view.as_ref(), &self.exact_sources).into_bytes();
+        let mut bytes =
+            header::text(&self.header, self.view.as_ref(), &self.exact_sources, self.block_errors.as_ref())
+                .into_bytes();
         bytes.extend_from_slice(format!("-Y {} +X {}\n", self.height, self.width).as_bytes());
         for row in self.pixels.chunks_exact(self.width) {
             let row: Vec<[u8; 4]> = row.iter().map(|&pixel| rgbe::encode(pixel)).collect();

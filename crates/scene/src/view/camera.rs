@@ -12,13 +12,13 @@ use sunpeak_core::Vec3;
 /// elevation.
 #[derive(Clone, Debug)]
 pub struct Camera {
-    kind: ViewKind,
+    pub(super) kind: ViewKind,
     position: Vec3,
-    forward: Vec3,
-    right: Vec3,
-    up: Vec3,
+    pub(super) forward: Vec3,
+    pub(super) right: Vec3,
+    pub(super) up: Vec3,
     /// Size of the picture on the plane.
-    size: [f64; 2],
+    pub(super) size: [f64; 2],
     /// Shift and lift, in parts of the picture.
     offset: [f64; 2],
     fore: f64,
@@ -79,7 +79,7 @@ impl Camera {
     }
 
     /// Direction in the camera's axes; its length is the distance to the surface on which clipping is measured.
-    fn local_direction(&self, u: f64, v: f64) -> Option<[f64; 3]> {
+    pub(super) fn local_direction(&self, u: f64, v: f64) -> Option<[f64; 3]> {
         let r2 = u * u + v * v;
         Some(match self.kind {
             ViewKind::Perspective | ViewKind::Parallel => [u, v, 1.0],
@@ -95,9 +95,10 @@ impl Camera {
                 if theta > PI {
                     return None;
                 }
+                let (sine, cosine) = theta.sin_cos();
                 // sin(theta) / theta, 1 in the middle.
-                let shrink = if theta > 0.0 { theta.sin() / theta } else { 1.0 };
-                [u * shrink, v * shrink, theta.cos()]
+                let shrink = if theta > 0.0 { sine / theta } else { 1.0 };
+                [u * shrink, v * shrink, cosine]
             }
             ViewKind::PlanisphericFisheye => {
                 let z = (1.0 - r2) / (1.0 + r2);

@@ -2,6 +2,7 @@
 
 mod camera;
 mod parse;
+mod pixel;
 mod print;
 mod solid_angle;
 #[cfg(test)]
@@ -9,6 +10,7 @@ mod tests;
 
 pub use camera::Camera;
 pub(crate) use parse::apply_header_line;
+pub use pixel::PixelRay;
 
 use sunpeak_core::{Error, Result, Vec3};
 
