@@ -158,6 +158,8 @@ class PeakSide:
     """Largest theta by azimuth: its least and its largest value."""
     share_between: float
     """Share of the directions between the first and the last theta of each azimuth with a peak: 1 without gaps."""
+    columns_at_edge: int
+    """Incident cells within which the peak ends, across a cut-off or at grazing incidence: there T is open."""
     through: list[Through]
     """T by direction; one azimuth where the table is isotropic."""
 

@@ -73,7 +73,8 @@ def verdict(peak: "PeakSide") -> Verdict:
         return Verdict("no", text)
     doubts = [doubt for doubt in (coarse(peak), weak(peak), uncertain(peak)) if doubt]
     use: Use = "if one can see through it" if doubts else "yes"
-    return Verdict(use, "; ".join([taken(peak), amount(peak), height(peak), *(doubts or [resolved(peak)])]))
+    facts = [taken(peak), *edge(peak), amount(peak), height(peak)]
+    return Verdict(use, "; ".join([*facts, *(doubts or [resolved(peak)])]))
 
 
 def is_accident(peak: "PeakSide") -> bool:
@@ -95,6 +96,14 @@ def taken(peak: "PeakSide") -> str:
     missing = 1.0 - peak.share_between
     gaps = f", with gaps in {percent(missing)} of that range" if missing > 0.0 else ""
     return f"the peak is taken {between} ({share}){gaps}"
+
+
+def edge(peak: "PeakSide") -> list[str]:
+    """Where the table leaves open how T falls to nothing."""
+    if not peak.columns_at_edge:
+        return []
+    cells = "one incident cell" if peak.columns_at_edge == 1 else f"{peak.columns_at_edge} incident cells"
+    return [f"it ends within {cells} (across the cut-off, or at grazing incidence), where T may be anything from 0 on"]
 
 
 def amount(peak: "PeakSide") -> str:

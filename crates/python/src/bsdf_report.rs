@@ -104,6 +104,7 @@ fn peak<'py>(py: Python<'py>, p: &PeakReport) -> PyResult<Bound<'py, PyDict>> {
     about.set_item("taken_between_deg", p.taken_between_deg)?;
     about.set_item("last_angle_deg", p.last_angle_deg)?;
     about.set_item("share_between", p.share_between)?;
+    about.set_item("columns_at_edge", p.columns_at_edge)?;
     let through: Vec<_> =
         p.through.iter().map(|t| (t.theta_deg, t.phi_deg, t.through, t.interval[0], t.interval[1])).collect();
     about.set_item("through", through)?;

@@ -6,19 +6,20 @@
 //! column has no peak it is zero.
 
 use crate::{basis::AngleBasis, table::Columns};
-use glam::DVec2;
+use glam::{DVec2, Vec3};
 use std::f64::consts::PI;
 use sunpeak_core::{Rgb, luminance, warp::disk_to_square};
 
 /// Values of all columns, and the factors that keep their means.
 #[derive(Debug)]
 pub struct ThroughMap {
-    values: Vec<Rgb>,
-    factors: Vec<Rgb>,
+    /// Three channels in 32 bits, as the tables themselves have them.
+    values: Vec<Vec3>,
+    factors: Vec<Vec3>,
     /// By how much the interpolant bends at each column: second differences, luminous.
-    bends: Vec<f64>,
+    bends: Vec<f32>,
     /// Where the peak may end within a column, the largest luminous value there or next door; elsewhere 0.
-    edges: Vec<f64>,
+    edges: Vec<f32>,
 }
 
 /// Share of the second difference by which a smooth function can depart from the scaled interpolant: a parabola departs by
@@ -36,27 +37,27 @@ impl ThroughMap {
         if values.iter().all(|v| *v == Rgb::ZERO) {
             return Self::none();
         }
-        let means = (0..values.len()).map(|c| mean(columns, &values, c));
-        let factors = values
-            .iter()
-            .zip(means)
-            .map(|(v, m)| {
-                Rgb::select(m.cmpgt(Rgb::ZERO), *v / m.max(Rgb::splat(f64::MIN_POSITIVE)), Rgb::ZERO)
-            })
-            .collect();
-        let bends = (0..values.len()).map(|c| bend(columns, &values, c)).collect();
-        let edges = (0..values.len()).map(|c| edge(columns, &values, c)).collect();
+        let values: Vec<Vec3> = values.iter().map(|v| v.as_vec3()).collect();
+        let factor = |c: usize| {
+            let (value, mean) = (values[c].as_dvec3(), mean(columns, &values, c));
+            let scaled = value / mean.max(Rgb::splat(f64::MIN_POSITIVE));
+            Rgb::select(mean.cmpgt(Rgb::ZERO), scaled, Rgb::ZERO).as_vec3()
+        };
+        let each = || 0..values.len();
+        let factors = each().map(factor).collect();
+        let bends = each().map(|c| bend(columns, &values, c) as f32).collect();
+        let edges = each().map(|c| edge(columns, &values, c) as f32).collect();
         Self { values, factors, bends, edges }
     }
 
     /// Does the peak end within the column of a point, at a cut-off or at grazing incidence? Then what T may reach there [-].
     pub fn edge(&self, columns: &Columns, p: DVec2) -> Option<f64> {
-        self.edges.get(columns.index(p)).copied().filter(|&edge| edge > 0.0)
+        self.edges.get(columns.index(p)).map(|&edge| f64::from(edge)).filter(|&edge| edge > 0.0)
     }
 
     /// By how much the truth can depart from the interpolant at a point, if it is as smooth as the columns look [-].
     pub fn bend(&self, columns: &Columns, p: DVec2) -> f64 {
-        BEND_SHARE * self.bends.get(columns.index(p)).copied().unwrap_or(0.0)
+        BEND_SHARE * self.bends.get(columns.index(p)).map_or(0.0, |&bend| f64::from(bend))
     }
 
     /// The value at a point of incidence.
@@ -65,24 +66,28 @@ impl ThroughMap {
             return Rgb::ZERO;
         }
         let factor = self.factors[columns.index(p)];
-        if factor == Rgb::ZERO { Rgb::ZERO } else { factor * interpolant(columns, &self.values, p) }
+        if factor == Vec3::ZERO {
+            return Rgb::ZERO;
+        }
+        factor.as_dvec3() * interpolant(columns, &self.values, p)
     }
 }
 
-fn interpolant(columns: &Columns, values: &[Rgb], p: DVec2) -> Rgb {
+fn interpolant(columns: &Columns, values: &[Vec3], p: DVec2) -> Rgb {
     match columns {
         Columns::Radial { side } => {
             // Columns run from grazing (0) to normal; the value is even in sin(theta).
             let last = side / 2 - 1;
             let (i, t) = between((1.0 - p.length()) * 0.5 * *side as f64, last);
-            values[i].lerp(values[(i + 1).min(last)], t)
+            values[i].as_dvec3().lerp(values[(i + 1).min(last)].as_dvec3(), t)
         }
         Columns::Square { side } => {
             let [x, y] = disk_to_square(p.into());
             let last = side - 1;
             let ((i, s), (j, t)) = (between(x * *side as f64, last), between(y * *side as f64, last));
             let (i1, j1) = ((i + 1).min(last), (j + 1).min(last));
-            let row = |i: usize| values[i * side + j].lerp(values[i * side + j1], t);
+            let at = |i: usize, j: usize| values[i * side + j].as_dvec3();
+            let row = |i: usize| at(i, j).lerp(at(i, j1), t);
             row(i).lerp(row(i1), s)
         }
         Columns::Patches(basis) => on_rings(basis, values, p.length_squared(), p.y.atan2(p.x)),
@@ -96,14 +101,14 @@ fn between(at: f64, last: usize) -> (usize, f64) {
     (i, at - i as f64)
 }
 
-fn on_rings(basis: &AngleBasis, values: &[Rgb], sin2: f64, phi: f64) -> Rgb {
+fn on_rings(basis: &AngleBasis, values: &[Vec3], sin2: f64, phi: f64) -> Rgb {
     let rings = basis.rings();
     let upper = rings.partition_point(|r| r.sin2(0.5) <= sin2);
     let ring = |n: usize| {
         let ring = &rings[n];
         let at = (phi / (2.0 * PI)).rem_euclid(1.0) * ring.phi_count as f64;
         let i = at as usize;
-        let patch = |k: usize| values[ring.first() + k % ring.phi_count];
+        let patch = |k: usize| values[ring.first() + k % ring.phi_count].as_dvec3();
         patch(i).lerp(patch(i + 1), at - i as f64)
     };
     if upper == 0 {
@@ -117,7 +122,7 @@ fn on_rings(basis: &AngleBasis, values: &[Rgb], sin2: f64, phi: f64) -> Rgb {
 }
 
 /// Mean of the interpolant over a column: exact, as each piece between centres and borders is linear in each coordinate.
-fn mean(columns: &Columns, values: &[Rgb], column: usize) -> Rgb {
+fn mean(columns: &Columns, values: &[Vec3], column: usize) -> Rgb {
     match columns {
         Columns::Radial { .. } => [0.25, 0.75]
             .into_iter()
@@ -132,16 +137,17 @@ fn mean(columns: &Columns, values: &[Rgb], column: usize) -> Rgb {
 }
 
 /// The largest luminous value of a column and those next to it, if one of them has none or the column reaches grazing incidence.
-fn edge(columns: &Columns, values: &[Rgb], column: usize) -> f64 {
-    let own = luminance(values[column]);
-    let around = columns.neighbours(column).into_iter().map(|c| luminance(values[c]));
+fn edge(columns: &Columns, values: &[Vec3], column: usize) -> f64 {
+    let y = |c: usize| luminance(values[c].as_dvec3());
+    let own = y(column);
+    let around = columns.neighbours(column).into_iter().map(y);
     let ends = columns.is_grazing(column) || around.clone().any(|v| v <= 0.0);
     if own > 0.0 && ends { around.fold(own, f64::max) } else { 0.0 }
 }
 
 /// Sum of the second differences along both coordinates at a column, luminous.
-fn bend(columns: &Columns, values: &[Rgb], column: usize) -> f64 {
-    let y = |i: usize| luminance(values[i]);
+fn bend(columns: &Columns, values: &[Vec3], column: usize) -> f64 {
+    let y = |i: usize| luminance(values[i].as_dvec3());
     let second = |a: f64, b: f64, c: f64| (a - 2.0 * b + c).abs();
     match columns {
         Columns::Radial { side } => {
@@ -169,7 +175,7 @@ fn bend(columns: &Columns, values: &[Rgb], column: usize) -> f64 {
     }
 }
 
-fn mean_over_patch(basis: &AngleBasis, values: &[Rgb], patch: usize) -> Rgb {
+fn mean_over_patch(basis: &AngleBasis, values: &[Vec3], patch: usize) -> Rgb {
     let (ring, step) = basis.ring_of(patch);
     let n = ring.phi_count as f64;
     let (start, end) = ((step as f64 - 0.5) / n, (step as f64 + 0.5) / n);

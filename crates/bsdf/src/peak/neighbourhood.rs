@@ -161,8 +161,9 @@ impl Averages<'_> {
         let width = shape.sigma / self.n.cell_width;
         let wanted = ENOUGH.iter().position(|&enough| width >= enough).unwrap_or(ENOUGH.len());
         let rule = match (wanted, self.table) {
-            // Patches differ too much in shape for the coarsest rule.
+            // Patches differ too much in shape for the coarsest rule, and towards the horizon lobes in angle grow steeply.
             (wanted, Table::Matrix(_)) => wanted.max(1),
+            (0, Table::Tree(_)) if self.columns.is_grazing(self.column) => 2,
             (2, Table::Tree(_)) if self.columns.len() <= MOST_FINE_COLUMNS => 3,
             (wanted, Table::Tree(_)) => wanted.min(1),
         };

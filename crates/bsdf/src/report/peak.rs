@@ -55,6 +55,8 @@ pub struct PeakReport {
     pub last_angle_deg: Option<[f64; 2]>,
     /// Share of the directions between the first and the last angle of each azimuth in which it is taken: 1 without gaps.
     pub share_between: f64,
+    /// Columns within which the peak ends: across a cut-off, or at grazing incidence. There T is open.
+    pub columns_at_edge: usize,
     /// Through transmittance by direction.
     pub through: Vec<ThroughReport>,
 }
@@ -120,6 +122,7 @@ impl Bsdf {
             taken_between_deg: reach.taken_between_deg,
             last_angle_deg: reach.last_angle_deg,
             share_between: reach.share_between,
+            columns_at_edge: with_peak.iter().filter(|c| at_edge(oriented, c.column)).count(),
             through: self.through_grid(oriented, front),
         })
     }
@@ -190,6 +193,11 @@ impl Bsdf {
             share_between: if any { inside / total } else { 0.0 },
         }
     }
+}
+
+fn at_edge(oriented: &Oriented, column: usize) -> bool {
+    let columns = oriented.distribution.columns();
+    oriented.distribution.split().is_edge(columns, columns.point(column, [0.5, 0.5]))
 }
 
 /// Between which angles the peak is taken.
