@@ -8,9 +8,10 @@ import pytest
 
 import sunpeak as sp
 from conftest import CommandLine, Radiance
+from sunpeak import _core
 from sunpeak.studies.peaks import FABRIC_BASES, Plan, Row, blurred, decoy, measure, scatterer
 from sunpeak.studies.peaks_report import markdown
-from sunpeak.studies.products import Product, decoys, fabrics, panel, see_through
+from sunpeak.studies.products import EXACT, Product, Seen, decoys, fabrics, panel, see_through
 from sunpeak.studies.radiance import through_by_radiance
 
 LIMITS = {
@@ -94,6 +95,17 @@ def test_a_blurred_peak_comes_back_and_a_scatterer_stays() -> None:
     assert row.scores["found"].error < 0.05
     assert row.more["found_deg"] == pytest.approx(2.0, rel=0.1)
     assert scatterer("t3-1024", 2.0).more["found_deg"] is None
+
+
+def test_the_report_says_when_a_lobe_looks_like_an_instrument(sunpeak: CommandLine, tmp_path: Path) -> None:
+    product = fabrics(1, seed=5)[0]
+    for name, seen in (("sharp", EXACT), ("blurred", Seen(fwhm_deg=1.0))):
+        text = _core.bsdf_xml(product.tabulate("t3-1024", seen)._core)
+        (tmp_path / f"{name}.xml").write_text(text, encoding="utf-8")
+    assert sp.Bsdf.load(tmp_path / "blurred.xml").instrument_seen() == pytest.approx(1.0, rel=0.1)
+    found = {name: sunpeak("bsdf", "info", tmp_path / f"{name}.xml").out for name in ("sharp", "blurred")}
+    assert "--instrument-fwhm" not in found["sharp"]
+    assert "--instrument-fwhm 0.9" in found["blurred"] or "--instrument-fwhm 1" in found["blurred"]
 
 
 def test_radiance_sees_what_our_reading_of_its_rule_sees(radiance: Radiance) -> None:

@@ -100,7 +100,7 @@ def taken(peak: "PeakSide") -> str:
 
 def edge(peak: "PeakSide") -> list[str]:
     """Where the table leaves open how T falls to nothing."""
-    if not peak.columns_at_edge:
+    if not peak.columns_at_edge or peak.columns_with_peak == peak.columns:
         return []
     cells = "one incident cell" if peak.columns_at_edge == 1 else f"{peak.columns_at_edge} incident cells"
     return [f"it ends within {cells} (across the cut-off, or at grazing incidence), where T may be anything from 0 on"]

@@ -41,6 +41,8 @@ class Inspection:
     description: Description
     looks: list[Look]
     report: BsdfReport
+    instrument_seen_deg: dict[Side, float | None]
+    """Width of a lobe that looks like an instrument's, where none was stated: full width at half maximum."""
 
     def to_dict(self) -> dict[str, Any]:
         """As one JSON object; `warnings` are those of reading, `findings` those of the report."""
@@ -51,9 +53,20 @@ class Inspection:
             **self.description,
             "angles": [asdict(look) for look in self.looks],
             **about,
-            "findings": findings,
+            "findings": [*findings, *self.hints()],
+            "instrument_seen_deg": self.instrument_seen_deg,
             "peak": {side: peaks.get(side) or self.nothing() for side in SIDES},
         }
+
+    def hints(self) -> list[str]:
+        """What measured data may need."""
+        return [
+            f"{side}: a lobe of {width:.2g} degrees (full width at half maximum, the same at all incidences) follows "
+            "the straight direction; if an instrument made it of a sharp beam, the peak is taken whole with "
+            f"--instrument-fwhm {width:.2g}"
+            for side, width in self.instrument_seen_deg.items()
+            if width is not None
+        ]
 
     def verdict(self, side: Side) -> Verdict:
         """Whether to use peak extraction for rays at a side, and why."""
@@ -70,7 +83,9 @@ def inspect(file: str, instrument_fwhm_deg: float | Literal["find"] | None = Non
     """Read a file and look at it from both sides; for measured data see `Bsdf.load`."""
     bsdf = Bsdf.load(file, instrument_fwhm_deg=instrument_fwhm_deg)
     looks = [look for side in SIDES for look in looks_at(bsdf, side)]
-    return Inspection(file, bsdf.describe(), looks, bsdf.peak_report())
+    stated = instrument_fwhm_deg is not None
+    seen = {side: None if stated else bsdf.instrument_seen(side) for side in SIDES}
+    return Inspection(file, bsdf.describe(), looks, bsdf.peak_report(), seen)
 
 
 def looks_at(bsdf: Bsdf, side: Side) -> list[Look]:

@@ -163,6 +163,14 @@ class Bsdf:
         """Say what is in the file: names, warnings, and its tables by the side that rays meet."""
         return cast("Description", self._core.describe())
 
+    def instrument_seen(self, side: Literal["front", "back"] = "front") -> float | None:
+        """Full width at half maximum [deg] of a lobe that looks like what an instrument makes of a sharp beam.
+
+        One of constant angular width that follows the straight direction; none if there is none. Such a peak needs
+        `load(..., instrument_fwhm_deg=)`, unless the product itself scatters so. Takes a second or so.
+        """
+        return _core.instrument_seen(self._core, side == "front")
+
     def peak_report(self) -> BsdfReport:
         """Look at all of it: resolution, energy, reciprocity, what the split takes, and whether to use it and why."""
         return report_on(self._core)

@@ -125,6 +125,13 @@ pub fn through_interval<'py>(
 }
 
 /// Write the split to a folder; gives the files' names.
+/// Width [deg] of a lobe at a side that looks like an instrument's.
+#[pyfunction]
+pub fn instrument_seen(py: Python<'_>, bsdf: &PyBsdf, front: bool) -> Option<f64> {
+    py.detach(|| bsdf.0.instrument_seen(front))
+}
+
+/// The text of an LBNL XML file.
 #[pyfunction]
 pub fn bsdf_xml(py: Python<'_>, bsdf: &PyBsdf) -> String {
     py.detach(|| bsdf.0.to_xml())

@@ -23,7 +23,8 @@ mod _core {
     use super::bsdf::PyBsdf;
     #[pymodule_export]
     use super::bsdf_report::{
-        bsdf_report, bsdf_xml, exit_cells, incident_cells, probe_directions, save_split, through_interval,
+        bsdf_report, bsdf_xml, exit_cells, incident_cells, instrument_seen, probe_directions, save_split,
+        through_interval,
     };
     #[pymodule_export]
     use super::error::InputError;

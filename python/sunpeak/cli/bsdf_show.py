@@ -30,7 +30,7 @@ def show(inspection: Inspection) -> None:
     console.print(tables(report))
     console.print(hemispherical(report))
     console.print(checks(report))
-    for finding in report.warnings():
+    for finding in [*report.warnings(), *inspection.hints()]:
         console.print(f"[yellow]warning:[/yellow] {finding}", soft_wrap=True)
     console.print(angles(inspection))
     for peak in report.peaks:

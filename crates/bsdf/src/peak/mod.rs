@@ -13,7 +13,7 @@ mod shape;
 mod split;
 mod surround;
 
-pub use instrument::Instrument;
+pub use instrument::{Instrument, find as find_instrument};
 pub use shape::NARROWEST;
 pub use split::{ColumnPeak, Part, Split};
 

@@ -5,7 +5,7 @@ use crate::{
     bsdf::{Bsdf, Mode},
     incident::Incident,
     kernel::TENTH_WIDTH,
-    peak::{NARROWEST, PeakRule},
+    peak::{NARROWEST, PeakRule, find_instrument},
     proposal::Oriented,
     table::Table,
 };
@@ -125,6 +125,13 @@ impl Bsdf {
             columns_at_edge: with_peak.iter().filter(|c| at_edge(oriented, c.column)).count(),
             through: self.through_grid(oriented, front),
         })
+    }
+
+    /// Full width at half maximum [deg] of a lobe of constant angular width that follows the straight direction at a side, as an
+    /// instrument's would; none if there is none. Takes a second or so.
+    pub fn instrument_seen(&self, front: bool) -> Option<f64> {
+        let d = &self.distribution(on_side(front, 0.0, 0.0), Mode::Transmission)?.distribution;
+        find_instrument(d.luminous(), d.columns())
     }
 
     /// Lowest and highest luminous through transmittance [-] that the data allow at `w_in`, by the split.
