@@ -72,7 +72,7 @@ impl Bsdf {
         let all = Incident::all(oriented, front).into_iter().zip(d.split().columns());
         all.map(|(incident, peak)| {
             let outline = d.columns().outline(incident.column, edge_points);
-            IncidentCell { outline: outline.into_iter().map(|p| sign * p).collect(), incident, peak: *peak }
+            IncidentCell { outline: outline.into_iter().map(|p| sign * p).collect(), incident, peak }
         })
         .collect()
     }

@@ -60,7 +60,7 @@ fn assert_same(a: &Bsdf, b: &Bsdf, name: &str) {
             assert_eq!(x.reversed, y.reversed);
             let (x, y) = (&x.distribution, &y.distribution);
             assert!(x.luminous() == y.luminous() && x.color() == y.color(), "{name}: {mode:?}");
-            assert_eq!(x.split().columns(), y.split().columns(), "{name}");
+            assert!(x.split().columns().eq(y.split().columns()), "{name}");
             for column in 0..x.columns().len() {
                 assert!(x.split().overlay(column).eq(y.split().overlay(column)), "{name}: {column}");
             }

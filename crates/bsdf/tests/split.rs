@@ -203,7 +203,7 @@ fn nothing_is_taken_from_lobes_that_the_basis_resolves() {
                 let panel = Panel { transmittance: 0.5, tenth_width_deg, same_angle };
                 let bsdf = tabulate(&panel, name.parse().unwrap(), &Goniophotometer::default()).unwrap();
                 let d = &bsdf.distribution(Vec3::Z, Mode::Transmission).unwrap().distribution;
-                for (column, found) in d.split().columns().iter().enumerate() {
+                for (column, found) in d.split().columns().enumerate() {
                     let p = d.columns().point(column, [0.5, 0.5]);
                     let area = if d.luminous().is_isotropic() {
                         d.smallest_projected_solid_angle()
@@ -232,7 +232,7 @@ fn nothing_is_taken_from_fabrics_without_holes_or_from_noise() {
             let bsdf = tabulate(&Diffuser { transmittance: 0.3 }, basis, &seen_by).unwrap();
             for w_in in [Vec3::Z, -Vec3::Z] {
                 let d = &bsdf.distribution(w_in, Mode::Transmission).unwrap().distribution;
-                let taken = d.split().columns().iter().filter(|c| luminance(c.through) > 0.0).count();
+                let taken = d.split().columns().filter(|c| luminance(c.through) > 0.0).count();
                 assert_eq!(taken, 0, "{name} {rays:?}");
             }
         }

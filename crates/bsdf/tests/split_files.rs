@@ -80,7 +80,7 @@ fn check_same(name: &str, a: &Bsdf, b: &Bsdf, tolerance: f64) {
                 assert!(close(f, g, tolerance), "{name} residual {column} {cell:?}: {f} {g}");
             }
         }
-        assert_eq!(one.split().columns(), two.split().columns(), "{name}");
+        assert!(one.split().columns().eq(two.split().columns()), "{name}");
     }
     for w in directions(200, true).into_iter().chain(directions(200, false)) {
         assert_eq!(a.through(w, PeakRule::Split), b.through(w, PeakRule::Split), "{name} {w}");

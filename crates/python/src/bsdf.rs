@@ -219,7 +219,7 @@ impl PyBsdf {
         let straight = -w_in.truncate();
         let (incident, _) = oriented.points(straight, straight);
         let column = oriented.distribution.columns().index(incident);
-        oriented.distribution.split().columns().get(column).copied()
+        oriented.distribution.split().column(column)
     }
 
     /// Share of the samples that go straight: the peak's flux over all of it.

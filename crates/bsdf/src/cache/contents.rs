@@ -148,8 +148,8 @@ type Part = (ColumnPeak, Vec<(usize, Rgb)>);
 
 fn write_split(out: &mut Encoder<impl Write>, split: &Split) -> io::Result<()> {
     out.count(split.columns().len())?;
-    for (column, peak) in split.columns().iter().enumerate() {
-        let ColumnPeak { through, contrast, detection_limit, interval: [low, high], lobe_sigma } = *peak;
+    for (column, peak) in split.columns().enumerate() {
+        let ColumnPeak { through, contrast, detection_limit, interval: [low, high], lobe_sigma } = peak;
         out.numbers(through.to_array())?;
         out.numbers([contrast, detection_limit, low, high, lobe_sigma])?;
         out.count(split.overlay(column).count())?;

@@ -29,27 +29,27 @@ impl Fit {
     /// The core's excess over the fit, over the core's share of it, is the peak T; its tails are taken out of the cells around,
     /// which depend on the fit itself: they become part of the two regressors.
     pub fn new(n: &Neighbourhood, values: &[f32], at_core: &[f64], around: &[f64]) -> Self {
-        let sums = |f: &dyn Fn(usize) -> f64| -> f64 {
+        let over_core = |f: &dyn Fn(usize) -> f64| -> f64 {
             n.core.iter().enumerate().map(|(i, b)| f(i) * b.cell.projected_solid_angle).sum()
         };
         let share = n.core_share.max(f64::MIN_POSITIVE);
-        let flux = sums(&|i| f64::from(values[n.core[i].cell.index])) / share;
-        let (area, lobe) = (sums(&|_| 1.0) / share, sums(&|i| at_core[i]) / share);
-        let mut m = [0.0; 7]; // sums of w, wu u, wu v, wv v, wu y, wv y, wy y, and of the data
+        let flux = over_core(&|i| f64::from(values[n.core[i].cell.index])) / share;
+        let (area, lobe) = (over_core(&|_| 1.0) / share, over_core(&|i| at_core[i]) / share);
+        let mut sums = [0.0; 6]; // of uu, uv, vv, uy, vy, yy, weighted
         let (mut weights, mut data, mut squares) = (0.0, 0.0, 0.0);
         for (i, (&(cell, w), &g)) in n.around.iter().zip(around).enumerate() {
             let tail = n.fringe.get(i).map_or(0.0, |b| b.share / b.cell.projected_solid_angle);
             let value = f64::from(values[cell.index]);
             let (u, v, y) = (1.0 - area * tail, g - lobe * tail, value - flux * tail);
-            for (sum, term) in m.iter_mut().zip([u * u, u * v, v * v, u * y, v * y, y * y]) {
+            for (sum, term) in sums.iter_mut().zip([u * u, u * v, v * v, u * y, v * y, y * y]) {
                 *sum += w * term;
             }
             weights += w;
             data += w * value;
             squares += w * value * value;
         }
-        let [uu, uv, vv, uy, vy, yy, _] = m;
-        if weights <= 0.0 || squares <= 0.0 {
+        let [uu, uv, vv, uy, vy, yy] = sums;
+        if uu <= 0.0 || squares <= 0.0 {
             return Self::default();
         }
         let determinant = uu * vv - uv * uv;

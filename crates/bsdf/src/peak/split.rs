@@ -18,7 +18,7 @@ use sunpeak_core::{Rgb, gray, luminance};
 /// The through peak of a distribution.
 #[derive(Debug)]
 pub struct Split {
-    columns: Vec<ColumnPeak>,
+    evidence: Vec<Evidence>,
     /// For each column its first overlay cell; one more at the end.
     first: Vec<u32>,
     overlay: Vec<Overlay>,
@@ -27,7 +27,7 @@ pub struct Split {
 }
 
 /// What the split found in one column of the table.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ColumnPeak {
     /// Through transmittance [-], the mean over the column; zero where no peak was accepted.
     pub through: Rgb,
@@ -39,6 +39,28 @@ pub struct ColumnPeak {
     pub interval: [f64; 2],
     /// Standard deviation of the smooth lobe under the peak, in projected coordinates.
     pub lobe_sigma: f64,
+}
+
+/// What [`ColumnPeak`] says beside its T, in 32 bits as the tables have their values; T itself is in the map.
+#[derive(Clone, Copy, Debug)]
+struct Evidence {
+    contrast: f32,
+    detection_limit: f32,
+    interval: [f32; 2],
+    lobe_sigma: f32,
+}
+
+impl From<ColumnPeak> for Evidence {
+    fn from(peak: ColumnPeak) -> Self {
+        // Absurd tables stay finite; only a contrast with nothing is not.
+        let finite = |value: f64| value.min(f32::MAX.into()) as f32;
+        Self {
+            contrast: peak.contrast as f32,
+            detection_limit: finite(peak.detection_limit),
+            interval: peak.interval.map(finite),
+            lobe_sigma: peak.lobe_sigma as f32,
+        }
+    }
 }
 
 /// A column's peak, and the cells that are lowered with their surround [1/sr].
@@ -59,7 +81,7 @@ impl Split {
 
     fn empty(instrument_fwhm_deg: Option<f64>) -> Self {
         Self {
-            columns: Vec::new(),
+            evidence: Vec::new(),
             first: vec![0],
             overlay: Vec::new(),
             map: ThroughMap::none(),
@@ -100,6 +122,7 @@ impl Split {
     /// What was found before: for each column its peak, and the cells that are lowered, with their surround [1/sr].
     pub fn from_parts(division: &Columns, parts: Vec<Part>, instrument_fwhm_deg: Option<f64>) -> Self {
         let mut split = Self::empty(instrument_fwhm_deg);
+        let through = parts.iter().map(|(column, _)| column.through).collect();
         for (column, mut cells) in parts {
             cells.sort_by_key(|c| c.0);
             split.overlay.extend(cells.into_iter().map(|(index, surround)| Overlay {
@@ -107,9 +130,12 @@ impl Split {
                 surround: surround.as_vec3().to_array(),
             }));
             split.first.push(split.overlay.len() as u32);
-            split.columns.push(column);
+            split.evidence.push(column.into());
         }
-        split.map = ThroughMap::new(division, split.columns.iter().map(|c| c.through).collect());
+        split.map = ThroughMap::new(division, through);
+        split.first.shrink_to_fit();
+        split.overlay.shrink_to_fit();
+        split.evidence.shrink_to_fit();
         split
     }
 
@@ -125,9 +151,21 @@ impl Split {
         self.overlay[range].iter().map(|c| (c.index as usize, DVec3::from(glam::Vec3::from(c.surround))))
     }
 
+    /// What was found in a column; none for reflection.
+    pub fn column(&self, column: usize) -> Option<ColumnPeak> {
+        let evidence = self.evidence.get(column)?;
+        Some(ColumnPeak {
+            through: self.map.value(column),
+            contrast: evidence.contrast.into(),
+            detection_limit: evidence.detection_limit.into(),
+            interval: evidence.interval.map(f64::from),
+            lobe_sigma: evidence.lobe_sigma.into(),
+        })
+    }
+
     /// What was found, column by column; empty for reflection.
-    pub fn columns(&self) -> &[ColumnPeak] {
-        &self.columns
+    pub fn columns(&self) -> impl ExactSizeIterator<Item = ColumnPeak> + Clone {
+        (0..self.evidence.len()).map(|c| self.column(c).unwrap_or_default())
     }
 
     /// The surround [1/sr] in place of a cell's value, where the cell is part of its column's peak.
@@ -147,7 +185,7 @@ impl Split {
     /// bend of the interpolant, which the data leave open within a column; anything up to the values next door where the peak ends
     /// within the column. Nominally 95 %.
     pub fn interval(&self, columns: &Columns, p_in: DVec2) -> [f64; 2] {
-        let Some(column) = self.columns.get(columns.index(p_in)) else { return [0.0, 0.0] };
+        let Some(column) = self.column(columns.index(p_in)) else { return [0.0, 0.0] };
         let mean = luminance(column.through);
         if mean <= 0.0 {
             return column.interval;
@@ -168,7 +206,7 @@ impl Split {
 
     /// Does any column have a peak?
     pub fn has_peak(&self) -> bool {
-        self.columns.iter().any(|c| luminance(c.through) > 0.0)
+        !self.map.is_none()
     }
 }
 

@@ -5,7 +5,7 @@ use crate::{
     bsdf::{Bsdf, Mode},
     incident::Incident,
     kernel::TENTH_WIDTH,
-    peak::{NARROWEST, PeakRule, find_instrument},
+    peak::{ColumnPeak, NARROWEST, PeakRule, find_instrument},
     proposal::Oriented,
     table::Table,
 };
@@ -89,7 +89,7 @@ impl Bsdf {
         let oriented = self.distribution(on_side(front, 0.0, 0.0), Mode::Transmission)?;
         let d = &oriented.distribution;
         let incident = Incident::all(oriented, front);
-        let found = d.split().columns();
+        let found: Vec<ColumnPeak> = d.split().columns().collect();
         let taken = |c: &&Incident| luminance(found[c.column].through) > 0.0;
         let with_peak: Vec<&Incident> = incident.iter().filter(taken).collect();
         let area = |columns: &[&Incident]| columns.iter().fold(0.0, |sum, c| sum + c.projected_solid_angle);
@@ -158,7 +158,7 @@ impl Bsdf {
 
     /// Straight flux over all transmitted flux under diffuse light.
     fn extracted_share(&self, oriented: &Oriented, front: bool) -> f64 {
-        let found = oriented.distribution.split().columns();
+        let found: Vec<ColumnPeak> = oriented.distribution.split().columns().collect();
         let isotropic = oriented.distribution.luminous().is_isotropic();
         let (mut straight, mut all) = (0.0, 0.0);
         for c in Incident::all(oriented, front) {

@@ -114,7 +114,7 @@ pub fn division(columns: &Columns) -> Division {
 
 fn column_file(d: &Distribution, at: &Incident) -> ColumnFile {
     let cells = d.luminous().cells(d.columns(), at.column);
-    let peak = d.split().columns()[at.column];
+    let peak = d.split().column(at.column).unwrap_or_default();
     let lowered: Vec<_> = d.split().overlay(at.column).collect();
     ColumnFile {
         column: at.column,
@@ -164,7 +164,7 @@ fn ledger(d: &Distribution, column: usize, cells: &[Cell]) -> Ledger {
         table += luminance(value) * area;
         residual += luminance(d.split().surround(column, cell.index).unwrap_or(value)) * area;
     }
-    let through = luminance(d.split().columns()[column].through);
+    let through = d.split().column(column).map_or(0.0, |peak| luminance(peak.through));
     Ledger { table, residual, through, error: table - residual - through }
 }
 

@@ -51,7 +51,7 @@ fn residual(d: &Distribution, column: usize, cell: &Cell) -> Rgb {
 fn check_columns(name: &str, d: &Distribution) {
     let (table, columns, split) = (d.luminous(), d.columns(), d.split());
     for column in 0..columns.len() {
-        let through = split.columns()[column].through;
+        let through = split.column(column).unwrap().through;
         let ahead = straight_cells(table, columns, column);
         let (mut whole, mut rest, mut straight) = (Rgb::ZERO, Rgb::ZERO, Rgb::ZERO);
         for cell in table.cells(columns, column) {
@@ -103,7 +103,7 @@ fn exact_points(columns: &Columns, column: usize) -> Vec<(DVec2, f64)> {
 /// The mean of T over each column is the column's; where nothing was found, nothing goes through.
 fn check_means(name: &str, d: &Distribution) {
     let (columns, split) = (d.columns(), d.split());
-    for (column, peak) in split.columns().iter().enumerate() {
+    for (column, peak) in split.columns().enumerate() {
         let points = exact_points(columns, column);
         let values = points.iter().map(|&(p, share)| share * split.through(columns, p));
         let mean: Rgb = values.sum();
@@ -126,7 +126,7 @@ fn check_sides(name: &str, bsdf: &Bsdf) {
         if o.reversed && !is_diagonal(d.luminous()) {
             continue; // a column of the other side is no column of the table
         }
-        let peak = d.split().columns()[d.columns().index(a)].through;
+        let peak = d.split().column(d.columns().index(a)).unwrap().through;
         let [whole, rest] = [PeakRule::Off, PeakRule::Split]
             .map(|rule| bsdf.hemispherical_smooth(w_in, Mode::Transmission, rule));
         assert!(
@@ -214,7 +214,7 @@ proptest! {
     fn all_of_clear_glass_goes_through_and_nothing_is_left(shape in clear_shape(), through in 0.001..1.0f64) {
         let d = Content::clear(through).distribution(&shape);
         check("clear", &d);
-        for (column, peak) in d.split().columns().iter().enumerate() {
+        for (column, peak) in d.split().columns().enumerate() {
             prop_assert!((luminance(peak.through) - through).abs() <= EQUAL * through, "{column}: {peak:?}");
             for cell in d.luminous().cells(d.columns(), column) {
                 prop_assert_eq!(residual(&d, column, &cell), Rgb::ZERO);
@@ -266,7 +266,7 @@ fn all_of_real_clear_glass_goes_through() {
         for w_in in directions(50, true) {
             let o = bsdf.distribution(w_in, Mode::Transmission).unwrap();
             let (a, _) = o.points(-w_in.truncate(), -w_in.truncate());
-            let column = &o.distribution.split().columns()[o.distribution.columns().index(a)];
+            let column = o.distribution.split().column(o.distribution.columns().index(a)).unwrap();
             // One of the files was sampled with rays, of which some strayed to other cells: they are no part of the peak.
             let straight =
                 luminance(o.distribution.value(a, a)) * o.distribution.luminous().projected_solid_angle(a, a);
