@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
+import numpy.typing as npt
 
 from sunpeak import _core
 from sunpeak.bsdf_draw import (
@@ -31,6 +32,7 @@ from sunpeak.scattering import Bsdf, Floats, rows, side_of_ray
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.collections import PolyCollection
     from matplotlib.figure import Figure
 
 Kind = Literal["exit", "through", "profile", "all"]
@@ -48,6 +50,8 @@ CLOSE_UP = 1.7
 
 PROFILE_POINTS = 7201
 """Points of the profile: 1/40 degree each."""
+
+BTDF_LABEL = "BTDF of the table [1/sr]"
 
 ON_NORMAL = 1e-9
 """Sine of theta below which a direction has no azimuth of its own."""
@@ -125,13 +129,13 @@ def outputs(output: str | PathLike[str]) -> list[Path]:
     return [path.with_suffix(suffix) for suffix in SUFFIXES]
 
 
-def save(figure: "Figure", target: Path) -> None:
+def save(figure: "Figure", target: Path, dpi: int = DPI) -> None:
     """Write a figure whole or not at all; the same picture gives the same file."""
     from matplotlib import rc_context  # noqa: PLC0415  (half a second that `--help` need not spend)
 
     metadata = {"Date": None} if target.suffix == ".svg" else None
     with rc_context({"svg.hashsalt": "sunpeak", "svg.fonttype": "path"}), whole_file(target) as temporary:
-        figure.savefig(temporary, format=target.suffix[1:], dpi=DPI, metadata=metadata)
+        figure.savefig(temporary, format=target.suffix[1:], dpi=dpi, metadata=metadata)
 
 
 def new_figure(width: float, height: float, title: str) -> "Figure":
@@ -163,7 +167,9 @@ def through_figure(incidence: Incidence) -> "Figure":
 def profile_figure(incidence: Incidence) -> "Figure":
     """The cut along the peak."""
     figure = new_figure(8.6, 5.0, f"{incidence.label}: the peak for {incidence.name}")
-    draw_profile(figure.subplots(), incidence)
+    axes = figure.subplots()
+    draw_profile(axes, incidence)
+    legend_below(axes, 0.13)
     return figure
 
 
@@ -174,6 +180,7 @@ def all_figure(incidence: Incidence) -> "Figure":
     draw_exit(figure, axes[0, 0], axes[0, 1], incidence)
     draw_through(figure, axes[1, 0], incidence)
     draw_profile(axes[1, 1], incidence)
+    legend_below(axes[1, 1], 0.13)
     return figure
 
 
@@ -185,8 +192,40 @@ FIGURES: dict[str, Callable[[Incidence], "Figure"]] = {
 }
 
 
-def draw_exit(figure: "Figure", whole: "Axes", close: "Axes", incidence: Incidence) -> None:
-    """The BTDF over the exit hemisphere; beside it the surroundings of the straight direction."""
+@dataclass(frozen=True)
+class ExitCells:
+    """The table's cells on the exit hemisphere of one incidence, on the disc."""
+
+    shapes: Floats
+    """Outlines (cells, points, 2)."""
+    values: Floats
+    """BTDF of the table (cells,) [1/sr]."""
+    is_peak: npt.NDArray[np.bool_]
+    """The split took something from it."""
+    probe: Floats
+    """The 29 directions that rules 1 and 2 look at, (29, 2)."""
+    straight: Floats
+    """The straight direction, (2,)."""
+
+    @property
+    def half_width(self) -> float:
+        """Of the close-up."""
+        reach = float(np.abs(self.probe - self.straight).max())
+        if self.is_peak.any():
+            reach = max(reach, float(np.abs(self.shapes[self.is_peak] - self.straight).max()))
+        return CLOSE_UP * reach
+
+    def within(self, half_width: float) -> npt.NDArray[np.bool_]:
+        """Cells that a close-up of this half width shows some of."""
+        offset = self.shapes - self.straight
+        inside: npt.NDArray[np.bool_] = ((offset.min(axis=1) <= half_width) & (offset.max(axis=1) >= -half_width)).all(
+            axis=1
+        )
+        return inside
+
+
+def exit_cells(incidence: Incidence) -> ExitCells:
+    """Ask the core."""
     core = incidence.bsdf._core
     outlines, numbers, is_peak = _core.exit_cells(core, incidence.w_in, "transmission", EDGE_POINTS)
     if not len(outlines):
@@ -194,25 +233,34 @@ def draw_exit(figure: "Figure", whole: "Axes", close: "Axes", incidence: Inciden
             f"{incidence.label}: nothing is transmitted at {incidence.name}, there is no exit hemisphere"
         )
     probe = disc(_core.probe_directions(core, incidence.w_in)[:, :2])
-    shapes, values = disc(outlines), numbers[:, 0]
-    limits = log_limits(values)
-    for axes in (whole, close):
-        drawn = draw_cells(axes, shapes, values, limits, scale="log", peak=is_peak)
-    straight = disc(-incidence.w_in[:, :2])[0]
+    return ExitCells(disc(outlines), numbers[:, 0], is_peak, probe, disc(-incidence.w_in[:, :2])[0])
+
+
+def draw_exit(figure: "Figure", whole: "Axes", close: "Axes", incidence: Incidence) -> None:
+    """The BTDF over the exit hemisphere; beside it the surroundings of the straight direction."""
+    cells = exit_cells(incidence)
+    limits = log_limits(cells.values)
+    drawn = draw_cells(whole, cells.shapes, cells.values, limits, scale="log", peak=cells.is_peak)
     draw_hemisphere(whole)
     whole.set_title("BTDF over the exit hemisphere", fontsize=10.5)
-    mark_straight(whole, straight)
-    reach = np.abs(probe - straight).max()
-    if is_peak.any():
-        reach = max(reach, np.abs(shapes[is_peak] - straight).max())
-    limit_to(close, straight, CLOSE_UP * reach)
-    draw_probe(close, probe, straight, float(incidence.bsdf.through(incidence.w_in, "radiance")[0]))
-    close.set_title(close_up_title(incidence, is_peak), fontsize=10.5)
+    mark_straight(whole, cells.straight)
+    through = float(incidence.bsdf.through(incidence.w_in, "radiance")[0])
+    draw_close_up(close, cells, limits, f"29 probes of rule 2 (T = {through:.4g})")
+    close.set_title(close_up_title(incidence, cells.is_peak), fontsize=10.5)
     legend_below(close)
-    figure.colorbar(drawn, ax=[whole, close], label="BTDF of the table [1/sr]", fraction=0.03, pad=0.02, extend="min")
+    figure.colorbar(drawn, ax=[whole, close], label=BTDF_LABEL, fraction=0.03, pad=0.02, extend="min")
 
 
-def close_up_title(incidence: Incidence, is_peak: "np.typing.NDArray[np.bool_]") -> str:
+def draw_close_up(axes: "Axes", cells: ExitCells, limits: tuple[float, float], probe_label: str) -> "PolyCollection":
+    """The surroundings of the straight direction, with the probe of rules 1 and 2."""
+    near = cells.within(cells.half_width)
+    drawn = draw_cells(axes, cells.shapes[near], cells.values[near], limits, scale="log", peak=cells.is_peak[near])
+    limit_to(axes, cells.straight, cells.half_width)
+    draw_probe(axes, cells.probe, cells.straight, probe_label)
+    return drawn
+
+
+def close_up_title(incidence: Incidence, is_peak: npt.NDArray[np.bool_]) -> str:
     """What the split found here."""
     if not is_peak.any():
         return "Around the straight direction: no peak"
@@ -228,9 +276,8 @@ def mark_straight(axes: "Axes", straight: Floats) -> None:
     )
 
 
-def draw_probe(axes: "Axes", probe: Floats, straight: Floats, through: float) -> None:
-    """The 29 points of rule 2 with the T that it finds, and the straight direction."""
-    name = f"29 probes of rule 2 (T = {through:.4g})"
+def draw_probe(axes: "Axes", probe: Floats, straight: Floats, name: str) -> None:
+    """The 29 points of rules 1 and 2, and the straight direction."""
     axes.plot(*probe.T, "o", markersize=4.5, markerfacecolor=GAP, markeredgecolor=INK, label=name, zorder=6)
     axes.plot(*straight, "x", markersize=9, markeredgewidth=2.0, color=MARK, label="straight direction", zorder=7)
     axes.plot([], [], "-", color=MARK, linewidth=2.0, label="peak (split)")
@@ -257,12 +304,12 @@ def draw_through(figure: "Figure", axes: "Axes", incidence: Incidence) -> None:
     legend_below(axes, 0.0)
 
 
-def draw_profile(axes: "Axes", incidence: Incidence) -> None:
-    """Table and residual in the plane of incidence, and the delta."""
+def draw_profile(axes: "Axes", incidence: Incidence, limits: tuple[float, float] | None = None) -> None:
+    """Table and residual in the plane of incidence, and the delta; `limits` of the BTDF [1/sr] if not the table's."""
     angle, w_out, straight_deg = profile_directions(incidence)
     table = incidence.bsdf.evaluate(incidence.w_in, w_out)
     residual = incidence.bsdf.evaluate(incidence.w_in, w_out, residual=True)
-    low, high = log_limits(table)
+    low, high = limits or log_limits(table)
     # What is less, or nothing, ends below the axis.
     table, residual = np.maximum(table, 0.1 * low), np.maximum(residual, 0.1 * low)
     if (table > residual).any():
@@ -278,7 +325,6 @@ def draw_profile(axes: "Axes", incidence: Incidence) -> None:
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
     axes.set_title(f"Profile through the straight direction, {incidence.name}", fontsize=10.5)
-    legend_below(axes, 0.13)
 
 
 def profile_directions(incidence: Incidence) -> tuple[Floats, Floats, float]:
@@ -313,7 +359,7 @@ def draw_delta(axes: "Axes", incidence: Incidence, straight_deg: float, limits: 
         xytext=(-7 if left else 7, 0),
         textcoords="offset points",
         ha="right" if left else "left",
-        va="center",
+        va="top",
         fontsize=9,
         color=MARK,
         fontweight="bold",

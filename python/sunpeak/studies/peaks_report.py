@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from functools import partial
+from typing import TypeVar
 
 from sunpeak.studies.peaks import Row
 
@@ -65,10 +66,12 @@ def degrees(value: float | None) -> str:
     return "none" if value is None else f"{value:.2f}°"
 
 
-Column = tuple[str, Callable[[Row], str]]
+About = TypeVar("About")
+"""What a row is about."""
+Column = tuple[str, Callable[[About], str]]
 
 
-def rule_columns(cell: Callable[[Row, str], str]) -> list[Column]:
+def rule_columns(cell: Callable[[Row, str], str]) -> list[Column[Row]]:
     """A column for each rule."""
     return [(title, partial(swapped, cell, rule)) for rule, title in RULES.items()]
 
@@ -78,12 +81,12 @@ def swapped(cell: Callable[[Row, str], str], rule: str, row: Row) -> str:
     return cell(row, rule)
 
 
-NAME: Column = ("product", lambda row: row.product)
-BASIS: Column = ("basis", lambda row: row.basis)
-HOLDS: Column = ("interval holds T", lambda row: "-" if row.holds is None else f"{100.0 * row.holds:.1f} %")
-ACCURACY = [NAME, BASIS, *rule_columns(error_and_misses), HOLDS]
+NAME: Column[Row] = ("product", lambda row: row.product)
+BASIS: Column[Row] = ("basis", lambda row: row.basis)
+HOLDS: Column[Row] = ("interval holds T", lambda row: "-" if row.holds is None else f"{100.0 * row.holds:.1f} %")
+ACCURACY: list[Column[Row]] = [NAME, BASIS, *rule_columns(error_and_misses), HOLDS]
 
-COLUMNS: dict[str, list[Column]] = {
+COLUMNS: dict[str, list[Column[Row]]] = {
     "fabrics": ACCURACY,
     "steep": ACCURACY,
     "products": ACCURACY,
@@ -121,11 +124,11 @@ def markdown(rows: list[Row]) -> str:
     for part, (title, about) in PARTS.items():
         chosen = [row for row in rows if row.part == part]
         if chosen:
-            parts.append(f"## {title}\n\n{about}\n\n{table(COLUMNS[part], chosen)}\n")
+            parts.append(f"## {title}\n\n{about}\n\n{table_of(COLUMNS[part], chosen)}\n")
     return "\n".join(parts)
 
 
-def table(columns: list[Column], rows: list[Row]) -> str:
+def table_of(columns: list[Column[About]], rows: list[About]) -> str:
     """A table, without the columns that no row fills."""
     shown = [(title, [cell(row) for row in rows]) for title, cell in columns]
     shown = [(title, cells) for title, cells in shown if any(cell != "-" for cell in cells)]

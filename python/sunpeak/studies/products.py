@@ -117,7 +117,7 @@ def see_through() -> list[Product]:
             {"open_area": 0.2, "thickness": 0.5, "from_walls": 0.2},
             largest_deg=0.9 * float(np.degrees(np.arctan(2.0))),
         ),
-        Product("clear glass", "pane", {"index": 1.52, "internal": 1.0}),
+        clear_glass(),
         Product("tinted glass", "pane", {"index": 1.52, "internal": 0.4}),
         Product(
             "venetian blind, slats at 20°",
@@ -126,6 +126,11 @@ def see_through() -> list[Product]:
             isotropic=False,
         ),
     ]
+
+
+def clear_glass() -> Product:
+    """A pane that absorbs nothing: all that it transmits goes straight."""
+    return Product("clear glass", "pane", {"index": 1.52, "internal": 1.0})
 
 
 def panel(tenth_width_deg: float) -> Product:
