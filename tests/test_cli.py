@@ -196,7 +196,12 @@ def test_the_same_seed_gives_the_same_picture_on_any_threads(sunpeak: CommandLin
 def test_ctrl_c_leaves_nothing(room: Path) -> None:
     command = [sys.executable, "-m", "sunpeak", "render", "room.rad", "-v", EYE, "-o", "out.hdr"]
     process = subprocess.Popen(
-        [*command, "--size", "800", "--samples", "100000"], cwd=room.parent, stderr=subprocess.PIPE, text=True
+        [*command, "--size", "800", "--samples", "100000"],
+        cwd=room.parent,
+        stderr=subprocess.PIPE,
+        text=True,
+        # As from a terminal: what a shell starts in the background has the signal ignored, and would hand that on.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     time.sleep(3.0)
     process.send_signal(signal.SIGINT)
