@@ -201,7 +201,7 @@ def test_ctrl_c_leaves_nothing(room: Path) -> None:
         stderr=subprocess.PIPE,
         text=True,
         # As from a terminal: what a shell starts in the background has the signal ignored, and would hand that on.
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # noqa: PLW1509  (this process has no threads)
     )
     time.sleep(3.0)
     process.send_signal(signal.SIGINT)
