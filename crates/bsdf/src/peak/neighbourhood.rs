@@ -147,27 +147,38 @@ pub struct Averages<'a> {
 }
 
 impl Averages<'_> {
-    /// A lobe of height 1 averaged over the core's cells.
-    pub fn over_core(&self, shape: Shape) -> Vec<f64> {
-        self.cells(shape)[..self.n.core.len()].iter().map(|d| d.average(shape)).collect()
+    /// Lobes of height 1 averaged over the cells, the core's first, by shape of the table's ladders.
+    pub fn of(&self, shapes: &[Shape]) -> Vec<Vec<f64>> {
+        let cells = self.n.core.len() + self.n.around.len();
+        let mut averages = vec![vec![0.0; cells]; shapes.len()];
+        let mut start = 0;
+        // One after the other what one rule is enough for.
+        for part in shapes.chunk_by(|a, b| a.in_angle == b.in_angle && self.rule(*a) == self.rule(*b)) {
+            let rule = self.rule(part[0]);
+            let distances = self.distances[rule].get_or_init(|| self.distances(RULES[rule]));
+            let mut of_cell = vec![0.0; part.len()];
+            for (cell, distances) in distances.iter().enumerate() {
+                distances.ladder(part[0], &mut of_cell);
+                for (shape, average) in of_cell.iter().enumerate() {
+                    averages[start + shape][cell] = *average;
+                }
+            }
+            start += part.len();
+        }
+        averages
     }
 
-    /// The same over the cells around it.
-    pub fn around(&self, shape: Shape) -> Vec<f64> {
-        self.cells(shape)[self.n.core.len()..].iter().map(|d| d.average(shape)).collect()
-    }
-
-    fn cells(&self, shape: Shape) -> &[Distances] {
+    /// The rule of [`RULES`] that is enough for a lobe.
+    fn rule(&self, shape: Shape) -> usize {
         let width = shape.sigma / self.n.cell_width;
         let wanted = ENOUGH.iter().position(|&enough| width >= enough).unwrap_or(ENOUGH.len());
-        let rule = match (wanted, self.table) {
+        match (wanted, self.table) {
             // Patches differ too much in shape for the coarsest rule, and towards the horizon lobes in angle grow steeply.
             (wanted, Table::Matrix(_)) => wanted.max(1),
             (0, Table::Tree(_)) if self.columns.is_grazing(self.column) => 2,
             (2, Table::Tree(_)) if self.columns.len() <= MOST_FINE_COLUMNS => 3,
             (wanted, Table::Tree(_)) => wanted.min(1),
-        };
-        self.distances[rule].get_or_init(|| self.distances(RULES[rule]))
+        }
     }
 
     fn distances(&self, rule: &[(f64, f64)]) -> Vec<Distances> {

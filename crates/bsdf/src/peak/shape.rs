@@ -22,19 +22,24 @@ pub struct Shape {
     pub in_angle: bool,
 }
 
+/// Factor from one width of the ladder to the next: 2^(-1/4).
+const STEP: f64 = 0.840_896_415_253_714_6;
+
 /// Through an instrument lobes narrower than so many times its blur look like the blur itself.
 const WIDER_THAN_BLUR: f64 = 2.0;
 
-/// The shapes to try for a table that an instrument may have blurred, widest first, each squared width 1/sqrt(2) of the one before:
-/// each on the disk and in angle.
+/// The shapes to try for a table that an instrument may have blurred: on the disk, then in angle, each a ladder from the widest down, each
+/// squared width 1/sqrt(2) of the one before.
 pub fn shapes(table: &Table, blur: Option<Spread>) -> Vec<Shape> {
     let narrowest = NARROWEST * table.smallest_projected_solid_angle().sqrt();
     let narrowest = narrowest.max(WIDER_THAN_BLUR * blur.map_or(0.0, Spread::sigma));
     let mut shapes = Vec::new();
-    let mut sigma = WIDEST;
-    while sigma >= narrowest {
-        shapes.extend([false, true].map(|in_angle| Shape { sigma, in_angle }));
-        sigma *= 0.5f64.powf(0.25);
+    for in_angle in [false, true] {
+        let mut sigma = WIDEST;
+        while sigma >= narrowest {
+            shapes.push(Shape { sigma, in_angle });
+            sigma *= STEP;
+        }
     }
     shapes
 }
@@ -76,6 +81,24 @@ impl Distances {
             })
             .collect();
         Self { pairs }
+    }
+
+    /// Lobes of height 1 of a part of the ladder averaged over the cell. Two steps down the exponent has doubled: what is two steps
+    /// further is the square.
+    pub fn ladder(&self, widest: Shape, averages: &mut [f64]) {
+        averages.fill(0.0);
+        let k = -0.5 / (widest.sigma * widest.sigma);
+        for p in &self.pairs {
+            let (distance, weight) =
+                if widest.in_angle { (p.angle, p.weight_in_angle) } else { (p.projected, p.weight) };
+            let mut powers = [(k * distance).exp(), (k * std::f64::consts::SQRT_2 * distance).exp()];
+            for two in averages.chunks_mut(2) {
+                for (average, power) in two.iter_mut().zip(&mut powers) {
+                    *average += weight * *power;
+                    *power *= *power;
+                }
+            }
+        }
     }
 
     /// A lobe of height 1 averaged over the cell.

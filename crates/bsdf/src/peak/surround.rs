@@ -97,22 +97,22 @@ impl ColumnFits {
         channels: &[&[f32]],
         shapes: &[Shape],
     ) -> Self {
-        let averages = n.averages(table, columns, column);
+        let averages = n.averages(table, columns, column).of(shapes);
         let mut found = Self {
             channels: vec![Vec::with_capacity(shapes.len()); channels.len()],
             at_core: Vec::with_capacity(shapes.len()),
             noise: ColumnNoise::default(),
         };
         let mut best = (f64::INFINITY, Fit::default(), Vec::new());
-        for &shape in shapes {
-            let (at_core, around) = (averages.over_core(shape), averages.around(shape));
+        for lobe in averages {
+            let (at_core, around) = lobe.split_at(n.core.len());
             for (fits, values) in found.channels.iter_mut().zip(channels) {
-                fits.push(Fit::new(n, values, &at_core, &around));
+                fits.push(Fit::new(n, values, at_core, around));
             }
             if let Some(fit) = found.channels[0].last().filter(|f| f.misfit() < best.0) {
-                best = (fit.misfit(), *fit, around);
+                best = (fit.misfit(), *fit, around.to_vec());
             }
-            found.at_core.push(at_core);
+            found.at_core.push(at_core.to_vec());
         }
         let (_, fit, lobe) = best;
         found.noise = ColumnNoise::of(
