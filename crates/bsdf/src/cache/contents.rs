@@ -5,7 +5,7 @@ use crate::{
     basis::AngleBasis,
     bsdf::Sides,
     distribution::Distribution,
-    peak::{ColumnPeak, Split},
+    peak::{ColumnPeak, Part, Split},
     table::{Matrix, Table},
     tree::Tree,
     xml::Document,
@@ -142,9 +142,6 @@ fn read_basis(from: &mut Decoder<impl Read>) -> io::Result<Arc<AngleBasis>> {
     }
     AngleBasis::new(&name, &rings).map(Arc::new).map_err(|_| damaged())
 }
-
-/// A column's peak and the cells that it lowers, with their surround.
-type Part = (ColumnPeak, Vec<(usize, Rgb)>);
 
 fn write_split(out: &mut Encoder<impl Write>, split: &Split) -> io::Result<()> {
     out.count(split.columns().len())?;

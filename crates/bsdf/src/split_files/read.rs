@@ -10,7 +10,7 @@ use crate::{
     bsdf::Bsdf,
     distribution::Distribution,
     load::sides_of,
-    peak::{ColumnPeak, Split},
+    peak::{ColumnPeak, Part, Split},
     table::{Columns, Matrix, Table},
     tree::Tree,
     xml,
@@ -67,9 +67,6 @@ fn buffered(path: &Path) -> Result<BufReader<File>> {
 struct Reader {
     file: PathBuf,
 }
-
-/// A column's peak with its cells as indices of the table and their surround.
-type Parts = Vec<(ColumnPeak, Vec<(usize, Rgb)>)>;
 
 impl Reader {
     fn error(&self, message: impl Into<String>) -> Error {
@@ -190,7 +187,7 @@ impl Reader {
         side: &SideFile,
         m: &Matrix,
         residual: &Distribution,
-    ) -> Result<(ColorTable, Parts)> {
+    ) -> Result<(ColorTable, Vec<Part>)> {
         let (mut changes, mut parts) = (Vec::new(), Vec::new());
         let width = m.exiting.len();
         let colored = residual.color().is_some();
@@ -219,7 +216,7 @@ impl Reader {
         side: &SideFile,
         tree: &Tree,
         residual: &Distribution,
-    ) -> Result<(ColorTable, Parts)> {
+    ) -> Result<(ColorTable, Vec<Part>)> {
         let columns = residual.columns();
         let colored = residual.color().is_some();
         let mut cubes: HashMap<Cube, Channels> = HashMap::new();
