@@ -62,19 +62,19 @@ def assert_alike(a: Floats, b: Floats, relative: float, absolute: float = 0.0) -
         "void plastic2 m 4 1 .5 0 . 0 6 .5 .4 .3 .06 .1 .3",
         "void metal2 m 6 1 0 .3 . -rz 40 0 6 .9 .7 .3 .8 .3 .1",
         "void trans2 m 4 .2 1 0 . 0 8 .7 .6 .5 .05 .12 .3 .6 .7",
-        "void ashik2 m 4 1 .3 0 . 0 8 0 0 0 .3 .2 .1 20 100",
+        "void ashik2 m 4 1 .3 0 . 0 8 0 0 0 .9 .8 .7 20 100",
     ],
     ids=lambda text: text.split()[1],
 )
 @pytest.mark.parametrize("side", ["reflected", "transmitted"])
 def test_highlights_of_a_sun(material: str, side: str, radiance: Radiance, tmp_path: Path) -> None:
-    """On a plane, rays up to 45 degrees from the normal, sun at 40 degrees before it or 10 behind it.
+    """On a plane, rays up to 45 degrees from the normal, sun at 29 degrees before it or 10 behind it.
 
     Transmission at larger angles is another matter: Radiance's lobe of `trans2` gives out more there than it gets.
     """
     if side == "transmitted" and "trans" not in material:
         pytest.skip("it transmits nothing")
-    sign, angle = (1.0, 0.7) if side == "reflected" else (-1.0, 0.17)
+    sign, angle = (1.0, 0.5) if side == "reflected" else (-1.0, 0.17)
     sun = np.array([np.sin(angle) * 0.8, np.sin(angle) * 0.6, np.cos(angle) * sign])
     text = SUN.format(*sun) + f"{material}\nm ring plane 0 0 8 0 0 0 0 0 1 0 9\n"
     rays = rays_at(np.zeros(3), 4.0, 60, seed=3, lowest=0.75)
@@ -136,10 +136,10 @@ def test_thin_mist_in_a_spotlight(radiance: Radiance, tmp_path: Path) -> None:
         "void spotlight beam 0 0 7 900 600 300 30 0 0 -2\nbeam ring lamp 0 0 8 0 0 2 0 0 -1 0 .05\n"
         "void mist fog 1 lamp 0 7 .002 .002 .004 .5 .5 .5 .4\n!genbox fog box 4 4 3 | xform -t -2 -2 -1.5\n"
     )
-    rays = rays_at(np.array([0.0, 0.0, 0.3]), 5.0, 40, seed=7)
-    options = ("-ab", "0", "-ms", "0.02", "-dj", "1", "-ds", "0.02")
+    rays = rays_at(np.array([0.0, 0.0, 0.3]), 5.0, 400, seed=7)
+    options = ("-ab", "0", "-ms", "0.01", "-dj", "1", "-ds", "0.02")
     theirs = radiance.rtrace(radiance.octree(tmp_path / "s.oct", text=text), rays, *options)
     seen = theirs[:, 0] > 0.2 * np.median(theirs[:, 0])
-    mine = ours(text, rays, 1 << 14)
+    mine = ours(text, rays, 1 << 12)
     ratio = mine[seen].sum(axis=0) / theirs[seen].sum(axis=0)
     np.testing.assert_allclose(ratio, 1.0, atol=0.03)
