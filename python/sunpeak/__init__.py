@@ -5,6 +5,7 @@ channels in Radiance's primaries [W sr⁻¹ m⁻²]; luminance [cd/m²] = 179 (0
 """
 
 from sunpeak._core import InputError, __version__
+from sunpeak.blinds import Blind
 from sunpeak.bsdf_plot import plot_bsdf
 from sunpeak.bsdf_report import BsdfReport
 from sunpeak.bsdf_verdict import Verdict
@@ -19,6 +20,7 @@ from sunpeak.scenes import Rays, Scene, View
 from sunpeak.skies import Place, Sky, SunPosition, sun_position
 
 __all__ = [
+    "Blind",
     "Bsdf",
     "BsdfReport",
     "Evidence",
