@@ -4,7 +4,6 @@ use super::{
     instrument::{self, Instrument},
     interpolate::ThroughMap,
     judge::Judged,
-    neighbourhood::Neighbourhood,
     surround,
 };
 use crate::{
@@ -102,14 +101,9 @@ impl Split {
             Instrument::Find => instrument::find(table, columns),
         };
         let blur = instrument_fwhm_deg.map(instrument::blur);
-        let neighbourhoods: Vec<_> =
-            (0..columns.len()).into_par_iter().map(|c| Neighbourhood::of(table, columns, c, blur)).collect();
-        let surrounds = surround::estimate(table, columns, &neighbourhoods, &channels, blur);
-        let judged: Vec<Judged> = neighbourhoods
-            .par_iter()
-            .zip(&surrounds)
-            .map(|(n, surround)| Judged::new(n, &channels, surround))
-            .collect();
+        let surrounds = surround::estimate(table, columns, &channels, blur);
+        let judged: Vec<Judged> =
+            surrounds.par_iter().map(|surround| Judged::new(&channels, surround)).collect();
         let certain: Vec<bool> = judged.iter().map(Judged::is_certain).collect();
         let parts = judged.iter().enumerate().map(|(column, judged)| {
             let beside = || columns.neighbours(column).into_iter().any(|c| certain[c]);
