@@ -10,6 +10,7 @@ from sunpeak.bsdf_plot import plot_bsdf
 from sunpeak.bsdf_report import BsdfReport
 from sunpeak.bsdf_verdict import Verdict
 from sunpeak.comfort import glare
+from sunpeak.expressions import evaluate
 from sunpeak.fabrics import Fabric
 from sunpeak.glare_report import GlareReport, GlareSource, ZoneLuminances
 from sunpeak.glare_rules import GlareRules, RulesName, Task
@@ -45,6 +46,7 @@ __all__ = [
     "ZoneLuminances",
     "__version__",
     "direction",
+    "evaluate",
     "glare",
     "plot_bsdf",
     "render",

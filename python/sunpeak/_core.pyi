@@ -171,3 +171,6 @@ def trace(
     max_bounces: int | None,
     progress: Callable[[int, int], None] | None,
 ) -> _Floats: ...
+def evaluate(
+    definitions: str, expressions: list[str], channels: npt.NDArray[np.float64], arguments: list[float]
+) -> npt.NDArray[np.float64]: ...
