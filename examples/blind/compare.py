@@ -28,7 +28,7 @@ blind polygon inside
 
 def main() -> None:
     """Render and judge all three."""
-    sp.Blind(width=1.0, tilt_deg=30.0, scattered=0.25).write(HERE / "blind.xml")
+    sp.Blind(width=1.0, tilt_deg=0.0, scattered=0.25).write(HERE / "blind.xml")
     sky = sp.Sky.perez((35.0, 190.0), direct_normal_w_m2=600, diffuse_horizontal_w_m2=110)
     (HERE / "sky.rad").write_text(sky.to_radiance())
     (HERE / "flat.rad").write_text(FLAT)
