@@ -70,9 +70,11 @@ impl Integrator<'_> {
                 return sum + path.throughput * self.light_from_infinity(&path);
             };
             let object = self.world.object(&hit);
-            let arrival = self.world.arrival(&hit, &path.ray);
+            let mut arrival = self.world.arrival(&hit, &path.ray);
             path.travel(hit.t);
-            match self.world.seen(object, &arrival, path.is_view()) {
+            path.tell(&mut arrival);
+            let mut choose = || sampler.next_1d();
+            match self.world.seen(object, &mut arrival, path.is_view(), &mut choose) {
                 Seen::Void => path.go_straight(arrival.point, Rgb::ONE),
                 Seen::Emitter(emitter) => {
                     return sum + path.throughput * self.light_from_lamp(&path, object, &arrival, emitter);
@@ -117,6 +119,9 @@ impl Integrator<'_> {
     /// Go on in a direction drawn from the smooth lobes, or where the guide points.
     fn scatter(&self, path: &mut Path, met: &Met, sampler: &mut Sampler) -> bool {
         let Some(sample) = self.draw(met, sampler) else { return false };
+        if !met.arrival.agrees_on(sample.direction) {
+            return false;
+        }
         let share = met.smooth_share();
         let mut weight = sample.weight.total();
         if weight == Rgb::ZERO {
@@ -186,7 +191,7 @@ impl<'w> Met<'w> {
 
     /// A surface element that takes up all light at its front.
     fn sensor(point: Vec3, normal: Vec3) -> Self {
-        let arrival = Arrival { point, normal, direction: -normal };
+        let arrival = Arrival::new(point, normal, -normal);
         let scattering =
             Scattering { smooth: Smooth::Sensor(Frame::from_normal(normal)), ..Scattering::BLACK };
         Self { arrival, material: None, is_flat: true, scattering, shares: [0.0, 0.0, 0.0, 1.0] }

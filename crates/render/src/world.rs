@@ -6,7 +6,7 @@ use crate::WorldOptions;
 use crate::accel::{Accel, Hit};
 use crate::guide::Guide;
 use crate::light::{DistantSources, Lamps};
-use crate::material::{Alternate, Arrival, Emitter, EmitterKind, Material, MaterialId};
+use crate::material::{Alternate, Arrival, Emitter, EmitterKind, Material, MaterialId, fault_of};
 use crate::shapes::Ray;
 use std::sync::atomic::{AtomicU64, Ordering};
 use sunpeak_bsdf::PeakRule;
@@ -100,12 +100,30 @@ impl World {
             Facing::Flat(normal) => normal,
             Facing::Curved(shape) => self.accel.shape(shape).normal(point),
         };
-        Arrival { point, normal, direction: ray.direction }
+        Arrival { distance: hit.t, travelled: hit.t, ..Arrival::new(point, normal, ray.direction) }
     }
 
     /// What a path sees. `view`: it comes from the camera and met only mirrors and clear panes.
-    pub(crate) fn seen(&self, object: &Object, arrival: &Arrival, view: bool) -> Seen<'_> {
+    /// Patterns, textures and mixtures change the arrival; `choose` gives random numbers in [0, 1).
+    pub(crate) fn seen(
+        &self,
+        object: &Object,
+        arrival: &mut Arrival,
+        view: bool,
+        choose: &mut dyn FnMut() -> f64,
+    ) -> Seen<'_> {
         match self.material(object.material) {
+            Material::Varying(varying) => {
+                let (material, modulation) = varying.at(&arrival.ray_state(), choose);
+                *arrival = arrival.modulated(&modulation);
+                material.map_or(Seen::Void, |id| self.seen_material(id, arrival, view))
+            }
+            _ => self.seen_material(object.material, arrival, view),
+        }
+    }
+
+    fn seen_material(&self, id: MaterialId, arrival: &Arrival, view: bool) -> Seen<'_> {
+        match self.material(id) {
             Material::Emitter(emitter) => match emitter.kind {
                 EmitterKind::Illum { alternate } if view || !arrival.at_front() => self.alternate(alternate),
                 _ => Seen::Emitter(emitter),
@@ -114,18 +132,37 @@ impl World {
                 Some(alternate) if view || !arrival.at_front() || self.is_transparent(alternate) => {
                     self.alternate(alternate)
                 }
-                _ => Seen::Surface(self.material(object.material)),
+                _ => Seen::Surface(self.material(id)),
             },
             material => Seen::Surface(material),
         }
     }
 
-    /// Reflectance of an object that is a mirror.
-    pub(crate) fn mirror_reflectance(&self, object: u32) -> Rgb {
-        match self.material(self.objects[object as usize].material) {
+    /// Reflectance of an object that is a mirror, where a ray meets it.
+    pub(crate) fn mirror_reflectance(&self, hit: &Hit, ray: &Ray) -> Rgb {
+        match self.material(self.object(hit).material) {
             Material::Mirror(mirror) => mirror.reflectance,
+            Material::Varying(varying) => {
+                let mut sum = Rgb::ZERO;
+                varying.each(&self.arrival(hit, ray).ray_state(), &mut |share, id, modulation| {
+                    if let Some(Material::Mirror(mirror)) = id.map(|id| self.material(id)) {
+                        sum += mirror.reflectance * modulation.tint * share;
+                    }
+                });
+                sum
+            }
             _ => Rgb::ZERO,
         }
+    }
+
+    /// What is wrong with an expression of the scene, if an evaluation has found that out.
+    pub(crate) fn check_expressions(&self) -> Result<()> {
+        let fault = |material: &Material| match material {
+            Material::Varying(varying) => varying.fault(),
+            Material::Emitter(emitter) => fault_of(&emitter.patterns),
+            _ => None,
+        };
+        self.materials.iter().find_map(fault).map_or(Ok(()), Err)
     }
 
     fn alternate(&self, alternate: Alternate) -> Seen<'_> {

@@ -13,6 +13,7 @@
 
 mod command;
 mod disc_coverage;
+mod field;
 mod files;
 mod interpret;
 mod load;
@@ -22,6 +23,7 @@ mod scene;
 mod view;
 
 pub use disc_coverage::disc_coverage;
+pub use field::{DataArray, Field, RayState, Spectrum};
 pub use files::LoadOptions;
 pub use load::load_primitives;
 pub use picture::{BlockErrors, ExactSource, Picture};

@@ -37,6 +37,9 @@ pub(super) struct Path {
     pub first_direction: Vec3,
     /// Extinction of the medium [1/m].
     extinction: Rgb,
+    /// Way since the camera, and since the path was last scattered, mirrored or refracted [m].
+    travelled: f64,
+    distance: f64,
 }
 
 impl Path {
@@ -53,6 +56,8 @@ impl Path {
             is_distorted: false,
             first_direction: ray.direction,
             extinction: Rgb::ZERO,
+            travelled: 0.0,
+            distance: 0.0,
         }
     }
 
@@ -64,10 +69,17 @@ impl Path {
     /// Count the way to a surface.
     pub fn travel(&mut self, distance: f64) {
         self.reach -= distance;
+        self.travelled += distance;
+        self.distance += distance;
         self.events += 1;
         if self.extinction != Rgb::ZERO {
             self.throughput *= (-self.extinction * distance).exp();
         }
+    }
+
+    /// How far the path has come.
+    pub fn tell(&self, arrival: &mut Arrival) {
+        (arrival.travelled, arrival.distance) = (self.travelled, self.distance);
     }
 
     /// Weaken the way to the inside face of a solid that the path did not enter by a face: it started inside.
@@ -88,6 +100,7 @@ impl Path {
 
     pub fn mirror(&mut self, arrival: &Arrival, share: Rgb, is_flat: bool) {
         self.ray = Ray::new(arrival.point, arrival.mirrored());
+        self.distance = 0.0;
         self.reach = f64::INFINITY;
         self.throughput *= share;
         self.is_bent = true;
@@ -96,6 +109,7 @@ impl Path {
 
     pub fn refract(&mut self, arrival: &Arrival, direction: Vec3, share: Rgb, material: Option<&Material>) {
         self.ray = Ray::new(arrival.point, direction);
+        self.distance = 0.0;
         self.throughput *= share;
         self.is_bent = true;
         self.is_distorted = true;
@@ -107,6 +121,7 @@ impl Path {
 
     pub fn depart(&mut self, departure: Departure, direction: Vec3, weight: Rgb) {
         self.ray = Ray::new(departure.point, direction);
+        self.distance = 0.0;
         self.reach = f64::INFINITY;
         self.throughput *= weight;
         self.departure = Some(departure);

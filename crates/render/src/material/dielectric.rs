@@ -65,7 +65,7 @@ impl Dielectric {
         Scattering {
             straight: Rgb::ZERO,
             mirrored: Rgb::splat(reflectance),
-            refracted: self.refract(arrival).map(|(d, share)| (d, Rgb::splat(share))),
+            refracted: self.refract(arrival).map(|(d, share)| (d, arrival.tint * share)),
             smooth: Smooth::None,
         }
     }
@@ -79,7 +79,7 @@ mod tests {
     fn arrival(theta: f64, from_inside: bool) -> Arrival {
         let z = if from_inside { 1.0 } else { -1.0 };
         let direction = Vec3::new(theta.sin(), 0.0, z * theta.cos());
-        Arrival { point: Vec3::ZERO, normal: Vec3::Z, direction }
+        Arrival::new(Vec3::ZERO, Vec3::Z, direction)
     }
 
     #[test]
@@ -97,7 +97,7 @@ mod tests {
     fn in_and_out_again_keeps_radiance() {
         let glass = Dielectric::new(gray(1.0), 1.5, 0.0);
         let (inside, into) = glass.refract(&arrival(0.6, false)).expect("refracts");
-        let at_exit = Arrival { point: Vec3::ZERO, normal: Vec3::NEG_Z, direction: inside };
+        let at_exit = Arrival::new(Vec3::ZERO, Vec3::NEG_Z, inside);
         let (out, out_of) = glass.refract(&at_exit).expect("refracts");
         let (r, _) = glass.fresnel(&arrival(0.6, false));
         assert!((into * out_of - (1.0 - r).powi(2)).abs() < 1e-12);

@@ -5,6 +5,7 @@ mod emitter;
 mod glass;
 mod smooth;
 mod table;
+mod varying;
 mod ward;
 
 pub(crate) use dielectric::Dielectric;
@@ -12,6 +13,7 @@ pub(crate) use emitter::{Emitter, EmitterKind};
 pub(crate) use glass::Glass;
 pub(crate) use smooth::{Smooth, SmoothSample, SmoothValue};
 pub(crate) use table::Table;
+pub(crate) use varying::{Mixture, Step, Varying, fault_of, tint_of};
 pub(crate) use ward::WardMaterial;
 
 use sunpeak_core::{Rgb, Vec3};
@@ -38,6 +40,8 @@ pub(crate) enum Material {
     Emitter(Emitter),
     /// `BSDF`, `aBSDF`.
     Table(Table),
+    /// Any of these with patterns, textures or mixtures. Only the world can tell which, so that to the questions here it is nothing.
+    Varying(Varying),
 }
 
 /// A planar mirror: reflects at its front, its back is black.
@@ -52,16 +56,36 @@ pub(crate) struct Mirror {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Arrival {
     pub point: Vec3,
-    /// Unit normal of the surface's front.
+    /// Unit normal of the surface's front, by which it scatters: in a mesh interpolated, always on the ray's side.
     pub normal: Vec3,
+    /// Unit normal of the front as the surface lies.
+    pub flat_normal: Vec3,
     /// Unit direction of the ray.
     pub direction: Vec3,
+    /// What patterns multiply the material's colour with.
+    pub tint: Rgb,
+    /// Way of the ray since it was last scattered [m].
+    pub distance: f64,
+    /// Way since the camera [m].
+    pub travelled: f64,
 }
 
 impl Arrival {
+    pub fn new(point: Vec3, normal: Vec3, direction: Vec3) -> Self {
+        Self { point, normal, flat_normal: normal, direction, tint: Rgb::ONE, distance: 0.0, travelled: 0.0 }
+    }
+
+    /// The same with a smoothed normal. One that looks away from the ray is mirrored to its side (as Radiance does).
+    pub fn smoothed(self, normal: Vec3) -> Self {
+        let cosine = normal.dot(self.direction);
+        let is_away = (cosine < 0.0) != self.at_front();
+        let normal = if is_away { normal - self.direction * (2.0 * cosine) } else { normal };
+        Self { normal: normal.try_normalize().unwrap_or(self.flat_normal), ..self }
+    }
+
     /// Did the ray come from the front?
     pub fn at_front(&self) -> bool {
-        self.direction.dot(self.normal) < 0.0
+        self.direction.dot(self.flat_normal) < 0.0
     }
 
     /// The normal on the ray's side.
@@ -74,9 +98,17 @@ impl Arrival {
         self.direction.dot(self.normal).abs()
     }
 
-    /// Direction of the mirrored ray.
+    /// Is a direction on the same side of the surface as it lies and as its normal is bent?
+    pub fn agrees_on(&self, direction: Vec3) -> bool {
+        self.normal == self.flat_normal
+            || (direction.dot(self.normal) > 0.0) == (direction.dot(self.flat_normal) > 0.0)
+    }
+
+    /// Direction of the mirrored ray, not into the surface.
     pub fn mirrored(&self) -> Vec3 {
-        reflect(self.direction, self.normal)
+        let mirrored = reflect(self.direction, self.normal);
+        let is_outside = (mirrored.dot(self.flat_normal) > 0.0) == self.at_front();
+        if is_outside { mirrored } else { reflect(self.direction, self.flat_normal) }
     }
 }
 
@@ -112,9 +144,9 @@ impl Material {
             Self::Glass(m) => m.scatter(arrival),
             Self::Dielectric(m) => m.scatter(arrival),
             Self::Mirror(m) if arrival.at_front() => {
-                Scattering { mirrored: m.reflectance, ..Scattering::BLACK }
+                Scattering { mirrored: m.reflectance * arrival.tint, ..Scattering::BLACK }
             }
-            Self::Mirror(_) | Self::Emitter(_) => Scattering::BLACK,
+            Self::Mirror(_) | Self::Emitter(_) | Self::Varying(_) => Scattering::BLACK,
             Self::Table(m) => m.scatter(arrival, view),
         }
     }
@@ -124,9 +156,9 @@ impl Material {
     pub fn straight(&self, arrival: &Arrival, direct: bool) -> Rgb {
         match self {
             Self::Ward(m) => m.straight(arrival),
-            Self::Glass(m) => m.transmittance(arrival.cosine()),
+            Self::Glass(m) => m.transmittance(arrival.cosine(), arrival.tint),
             Self::Table(m) => m.straight(arrival, direct),
-            Self::Dielectric(_) | Self::Mirror(_) | Self::Emitter(_) => Rgb::ZERO,
+            Self::Dielectric(_) | Self::Mirror(_) | Self::Emitter(_) | Self::Varying(_) => Rgb::ZERO,
         }
     }
 
@@ -135,7 +167,9 @@ impl Material {
         match self {
             Self::Ward(m) => m.is_trans(),
             Self::Table(_) => true,
-            Self::Glass(_) | Self::Dielectric(_) | Self::Mirror(_) | Self::Emitter(_) => false,
+            Self::Glass(_) | Self::Dielectric(_) | Self::Mirror(_) | Self::Emitter(_) | Self::Varying(_) => {
+                false
+            }
         }
     }
 
@@ -146,7 +180,7 @@ impl Material {
             Self::Glass(_) | Self::Dielectric(_) => true,
             Self::Ward(m) => m.is_trans(),
             Self::Table(m) => m.is_aperture,
-            Self::Mirror(_) | Self::Emitter(_) => false,
+            Self::Mirror(_) | Self::Emitter(_) | Self::Varying(_) => false,
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::{
     Interpreter, Named, Reference, Unusable, VOID,
     args::{check_counts, check_not_negative, smallest, title, triple, unsupported},
-    bsdf, patterns,
+    bsdf,
 };
 use crate::{Material, ModifierId, ModifierKind, Ward, raw::Primitive};
 
@@ -11,7 +11,7 @@ use crate::{Material, ModifierId, ModifierKind, Ward, raw::Primitive};
 const GLASS_INDEX: f64 = 1.52;
 
 impl Interpreter<'_> {
-    pub(super) fn kind_of(&self, primitive: &Primitive) -> Result<ModifierKind, Unusable> {
+    pub(super) fn kind_of(&mut self, primitive: &Primitive) -> Result<ModifierKind, Unusable> {
         let material = match primitive.kind.name {
             "plastic" => Material::Plastic(ward(primitive, 5)?),
             "metal" => Material::Metal(ward(primitive, 5)?),
@@ -30,8 +30,10 @@ impl Interpreter<'_> {
             }
             "spotlight" => spotlight(primitive)?,
             "BSDF" | "aBSDF" => Material::Bsdf(bsdf::material(primitive, self.options, &self.cwd)?),
-            "brightfunc" => return Ok(ModifierKind::Pattern(patterns::bright_function(primitive)?)),
-            _ => return Err(unsupported(primitive).into()),
+            _ => {
+                let modulation = self.modulation(primitive)?;
+                return modulation.ok_or_else(|| unsupported(primitive).into());
+            }
         };
         Ok(ModifierKind::Material(material))
     }
@@ -50,6 +52,11 @@ impl Interpreter<'_> {
         let name = primitive.strings.first().map_or(VOID, String::as_str);
         let alternate = Some(self.alternate(primitive, name)?);
         Ok(Material::Illum { radiance: triple(&primitive.reals, 0), alternate })
+    }
+
+    /// A modifier that a mixture names.
+    pub(super) fn mixed(&self, primitive: &Primitive, name: &str) -> Result<Option<ModifierId>, Unusable> {
+        self.alternate(primitive, name)
     }
 
     fn alternate(&self, primitive: &Primitive, name: &str) -> Result<Option<ModifierId>, Unusable> {
