@@ -89,10 +89,12 @@ impl Integrator<'_> {
                 return sum + path.throughput * self.light_from_infinity(&path);
             };
             let object = self.world.object(&hit);
+            let mut arrival = self.world.arrival(&hit, &path.ray);
             let view = path.is_view();
-            let (seen, arrival) = self.world.meet(&hit, &path.ray, view, &mut path.inside);
             path.travel(hit.t);
-            match seen {
+            path.tell(&mut arrival);
+            let mut choose = || sampler.next_1d();
+            match self.world.meet(object, &mut arrival, view, &mut path.inside, &mut choose) {
                 Seen::Void => path.go_straight(arrival.point, Rgb::ONE),
                 Seen::Emitter(emitter) => {
                     return sum + path.throughput * self.light_from_lamp(&path, object, &arrival, emitter);
@@ -137,6 +139,9 @@ impl Integrator<'_> {
     /// Go on in a direction drawn from the smooth lobes, or where the guide points.
     fn scatter(&self, path: &mut Path, met: &Met, sampler: &mut Sampler) -> bool {
         let Some(sample) = self.draw(met, sampler) else { return false };
+        if !met.arrival.agrees_on(sample.direction) {
+            return false;
+        }
         let share = met.smooth_share();
         let mut weight = sample.weight.total();
         if weight == Rgb::ZERO {

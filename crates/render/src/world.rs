@@ -6,8 +6,10 @@ use crate::WorldOptions;
 use crate::accel::{Accel, Hit};
 use crate::guide::Guide;
 use crate::light::{DistantSources, Lamps};
-use crate::material::{Air, Alternate, Arrival, Emitter, EmitterKind, Inside, Material, MaterialId};
-use crate::shapes::{COINCIDENT, Ray, SmoothMesh};
+use crate::material::{
+    Air, Alternate, Arrival, Emitter, EmitterKind, Inside, Material, MaterialId, fault_of,
+};
+use crate::shapes::{COINCIDENT, MeshSurface, Ray};
 use std::sync::atomic::{AtomicU64, Ordering};
 use sunpeak_bsdf::PeakRule;
 use sunpeak_core::{Result, Rgb, Vec3};
@@ -27,8 +29,8 @@ pub struct World {
     pub(crate) rays: AtomicU64,
     /// Where diffuse surfaces look for light, if there are shades.
     pub(crate) guide: Option<Guide>,
-    /// Meshes with normals at their vertices.
-    pub(crate) meshes: Vec<SmoothMesh>,
+    /// Meshes with normals or local coordinates at their vertices.
+    pub(crate) meshes: Vec<MeshSurface>,
     /// Is there mist or antimatter?
     pub(crate) has_volumes: bool,
 }
@@ -49,8 +51,16 @@ pub(crate) enum Facing {
     Flat(Vec3),
     /// From an analytic shape.
     Curved(u32),
-    /// Interpolated between a triangle's corners.
-    Smooth { mesh: u32, triangle: u32 },
+    /// From a triangle of a mesh, which has local coordinates or normals to interpolate.
+    Mesh { mesh: u32, triangle: u32 },
+}
+
+/// What a path meets where volumes begin and end.
+pub(crate) enum Boundary {
+    /// Nothing that it would notice.
+    Null,
+    /// The face of a solid that antimatter cuts.
+    Face(MaterialId),
 }
 
 /// What a path meets at a surface.
@@ -105,21 +115,33 @@ impl World {
         let normal = match self.object(hit).facing {
             Facing::Flat(normal) => normal,
             Facing::Curved(shape) => self.accel.shape(shape).normal(point),
-            Facing::Smooth { mesh, triangle } => {
-                let (flat, smooth) = self.meshes[mesh as usize].normals_at(triangle, point);
-                return Arrival::new(point, flat, ray.direction).smoothed(smooth);
+            Facing::Mesh { mesh, triangle } => {
+                let (normal, bent, local) = self.meshes[mesh as usize].at(triangle, point);
+                let (distance, travelled) = (hit.t, hit.t);
+                let flat =
+                    Arrival { local, distance, travelled, ..Arrival::new(point, normal, ray.direction) };
+                return bent.map_or(flat, |bent| flat.smoothed(bent));
             }
         };
-        Arrival::new(point, normal, ray.direction)
+        Arrival { distance: hit.t, travelled: hit.t, ..Arrival::new(point, normal, ray.direction) }
     }
 
-    /// What a path that is in these volumes meets; they change where it passes a boundary.
-    pub(crate) fn meet(&self, hit: &Hit, ray: &Ray, view: bool, inside: &mut Inside) -> (Seen<'_>, Arrival) {
-        let arrival = self.arrival(hit, ray);
-        let object = self.object(hit);
-        match self.meet_volume(object, &arrival, inside) {
-            Some(met) => met,
-            None => (self.seen(object, &arrival, view), arrival),
+    /// What a path that is in these volumes meets; they change where it passes a boundary. Otherwise as `seen`.
+    pub(crate) fn meet(
+        &self,
+        object: &Object,
+        arrival: &mut Arrival,
+        view: bool,
+        inside: &mut Inside,
+        choose: &mut dyn FnMut() -> f64,
+    ) -> Seen<'_> {
+        match self.meet_volume(object, arrival, inside) {
+            Some(Boundary::Null) => Seen::Void,
+            Some(Boundary::Face(face)) => {
+                *arrival = arrival.turned();
+                self.alternate(Some(face), arrival, choose)
+            }
+            None => self.seen(object, arrival, view, choose),
         }
     }
 
@@ -129,21 +151,22 @@ impl World {
         object: &Object,
         arrival: &Arrival,
         inside: &mut Inside,
-    ) -> Option<(Seen<'_>, Arrival)> {
+    ) -> Option<Boundary> {
         if !self.has_volumes {
             return None;
         }
         let (id, at_front) = (object.material, arrival.at_front());
-        match self.material(id) {
-            Material::Antimatter(antimatter) if !at_front && inside.is_in_clipped(id) => {
+        let volume = self.volume(id);
+        match self.material(volume) {
+            Material::Antimatter(antimatter) if !at_front && inside.is_in_clipped(volume) => {
                 // The ray has come into a solid that does not exist here, and now it does: the cut face.
-                if antimatter.face.is_some() {
-                    return Some((self.alternate(antimatter.face), arrival.turned()));
+                if let Some(face) = antimatter.face {
+                    return Some(Boundary::Face(face));
                 }
-                inside.leave(id);
+                inside.leave(volume);
             }
-            Material::Mist(_) | Material::Antimatter(_) if at_front => inside.enter(id),
-            Material::Mist(_) | Material::Antimatter(_) => inside.leave(id),
+            Material::Mist(_) | Material::Antimatter(_) if at_front => inside.enter(volume),
+            Material::Mist(_) | Material::Antimatter(_) => inside.leave(volume),
             _ => {
                 let clips = |volume: &MaterialId| match self.material(*volume) {
                     Material::Antimatter(antimatter) => antimatter.clipped.contains(&id),
@@ -153,7 +176,15 @@ impl World {
                 inside.cross_clipped(clipping, at_front);
             }
         }
-        Some((Seen::Void, *arrival))
+        Some(Boundary::Null)
+    }
+
+    /// The material itself where it has patterns, which mean nothing to a volume.
+    fn volume(&self, id: MaterialId) -> MaterialId {
+        match self.material(id) {
+            Material::Varying(varying) => varying.material.unwrap_or(id),
+            _ => id,
+        }
     }
 
     /// The air in these volumes, if there is mist.
@@ -175,7 +206,7 @@ impl World {
         }
         let mut crossings: Vec<(Hit, bool)> = Vec::new();
         self.accel.each_crossing(ray, f64::INFINITY, |hit| {
-            let is_mist = matches!(self.material(self.object(&hit).material), Material::Mist(_));
+            let is_mist = matches!(self.material(self.volume(self.object(&hit).material)), Material::Mist(_));
             let is_seam = |(h, _): &(Hit, bool)| h.object == hit.object && (h.t - hit.t).abs() <= COINCIDENT;
             if is_mist && !crossings.iter().any(is_seam) {
                 crossings.push((hit, self.arrival(&hit, ray).at_front()));
@@ -185,40 +216,100 @@ impl World {
         crossings.sort_by(|(a, _), (b, _)| a.t.total_cmp(&b.t));
         // From far away back to the point.
         for (hit, at_front) in crossings.into_iter().rev() {
-            let volume = self.object(&hit).material;
+            let volume = self.volume(self.object(&hit).material);
             if at_front { inside.leave(volume) } else { inside.enter(volume) }
         }
         inside
     }
 
     /// What a path sees. `view`: it comes from the camera and met only mirrors and clear panes.
-    pub(crate) fn seen(&self, object: &Object, arrival: &Arrival, view: bool) -> Seen<'_> {
+    /// Patterns, textures and mixtures change the arrival; `choose` gives random numbers in [0, 1).
+    pub(crate) fn seen(
+        &self,
+        object: &Object,
+        arrival: &mut Arrival,
+        view: bool,
+        choose: &mut dyn FnMut() -> f64,
+    ) -> Seen<'_> {
         match self.material(object.material) {
+            Material::Varying(varying) => {
+                let (material, modulation) = varying.at(&arrival.ray_state(), choose);
+                *arrival = arrival.modulated(&modulation);
+                material.map_or(Seen::Void, |id| self.seen_material(id, arrival, view, choose))
+            }
+            _ => self.seen_material(object.material, arrival, view, choose),
+        }
+    }
+
+    fn seen_material(
+        &self,
+        id: MaterialId,
+        arrival: &mut Arrival,
+        view: bool,
+        choose: &mut dyn FnMut() -> f64,
+    ) -> Seen<'_> {
+        match self.material(id) {
             Material::Emitter(emitter) => match emitter.kind {
-                EmitterKind::Illum { alternate } if view || !arrival.at_front() => self.alternate(alternate),
+                EmitterKind::Illum { alternate } if view || !arrival.at_front() => {
+                    self.alternate(alternate, arrival, choose)
+                }
                 _ => Seen::Emitter(emitter),
             },
             Material::Mirror(mirror) => match mirror.alternate {
                 Some(alternate) if view || !arrival.at_front() || self.is_transparent(alternate) => {
-                    self.alternate(alternate)
+                    self.alternate(alternate, arrival, choose)
                 }
-                _ => Seen::Surface(self.material(object.material)),
+                _ => Seen::Surface(self.material(id)),
             },
             Material::Table(table) if table.is_passed(arrival, view) => Seen::Void,
             material => Seen::Surface(material),
         }
     }
 
-    /// Reflectance of an object that is a mirror.
-    pub(crate) fn mirror_reflectance(&self, object: u32) -> Rgb {
-        match self.material(self.objects[object as usize].material) {
+    /// Reflectance of an object that is a mirror, where a ray meets it.
+    pub(crate) fn mirror_reflectance(&self, hit: &Hit, ray: &Ray) -> Rgb {
+        match self.material(self.object(hit).material) {
             Material::Mirror(mirror) => mirror.reflectance,
+            Material::Varying(varying) => {
+                let mut sum = Rgb::ZERO;
+                varying.each(&self.arrival(hit, ray).ray_state(), &mut |share, id, modulation| {
+                    if let Some(Material::Mirror(mirror)) = id.map(|id| self.material(id)) {
+                        sum += mirror.reflectance * modulation.tint * share;
+                    }
+                });
+                sum
+            }
             _ => Rgb::ZERO,
         }
     }
 
-    fn alternate(&self, alternate: Alternate) -> Seen<'_> {
-        match alternate.map(|id| self.material(id)) {
+    /// What is wrong with an expression of the scene, if an evaluation has found that out.
+    pub(crate) fn check_expressions(&self) -> Result<()> {
+        let fault = |material: &Material| match material {
+            Material::Varying(varying) => varying.fault(),
+            Material::Emitter(emitter) => fault_of(&emitter.patterns),
+            _ => None,
+        };
+        self.materials.iter().find_map(fault).map_or(Ok(()), Err)
+    }
+
+    /// A material that takes another one's place, itself without alternates.
+    fn alternate(
+        &self,
+        alternate: Alternate,
+        arrival: &mut Arrival,
+        choose: &mut dyn FnMut() -> f64,
+    ) -> Seen<'_> {
+        let id = match alternate.map(|id| (id, self.material(id))) {
+            Some((_, Material::Varying(varying))) => {
+                let (material, modulation) = varying.at(&arrival.ray_state(), choose);
+                *arrival = arrival.modulated(&modulation);
+                material
+            }
+            Some((id, _)) => Some(id),
+            None => None,
+        };
+        match id.map(|id| self.material(id)) {
             None => Seen::Void,
             Some(Material::Emitter(emitter)) => Seen::Emitter(emitter),
             Some(material) => Seen::Surface(material),

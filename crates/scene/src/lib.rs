@@ -15,6 +15,7 @@
 mod command;
 mod compiled;
 mod disc_coverage;
+mod field;
 mod files;
 mod interpret;
 mod load;
@@ -24,6 +25,7 @@ mod scene;
 mod view;
 
 pub use disc_coverage::disc_coverage;
+pub use field::{DataArray, Field, RayState, Spectrum};
 pub use files::LoadOptions;
 pub use load::load_primitives;
 pub use picture::{BlockErrors, ExactSource, Picture};

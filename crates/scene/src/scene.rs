@@ -1,5 +1,6 @@
 //! What scene files say: surfaces and modifiers, in file order, with positions for error messages.
 
+use crate::field::{Field, Spectrum};
 use std::{path::PathBuf, sync::Arc};
 use sunpeak_core::{Location, Rgb, Vec3};
 use sunpeak_sky::SkyDistribution;
@@ -32,18 +33,43 @@ pub struct Modifier {
     pub location: Location,
 }
 
-/// A material or a pattern.
+/// What a modifier is.
 #[derive(Clone, Debug)]
 pub enum ModifierKind {
     /// Says how a surface reflects, transmits or emits.
     Material(Material),
-    /// Multiplies what the material above it says, by direction or place.
+    /// Multiplies what the material says, by direction or place.
     Pattern(Pattern),
+    /// Bends the normal: adds its three values, in its own frame, to the unit normal.
+    Texture(Arc<Field>),
+    /// One modifier or another: `fore` with the share that the weight's value says, 0 to 1, `back` with the rest.
+    Mixture {
+        /// Foreground; `None` is `void`.
+        fore: Option<ModifierId>,
+        /// Background; `None` is `void`.
+        back: Option<ModifierId>,
+        /// Share of the foreground.
+        weight: Arc<Field>,
+    },
 }
 
-/// Patterns that are understood.
+/// Patterns.
 #[derive(Clone, Debug)]
 pub enum Pattern {
+    /// The same everywhere: a spectrum, in three channels.
+    Uniform(Rgb),
+    /// One value of a field for all channels.
+    Bright(Arc<Field>),
+    /// Three values of a field.
+    Color(Arc<Field>),
+    /// A spectrum over place or direction, in three channels. The field's function is asked for each wavelength: with the
+    /// wavelength alone, or with the data's value and the wavelength.
+    Spectral {
+        /// The function, and the data without its last coordinate.
+        field: Arc<Field>,
+        /// Wavelengths and their weights.
+        spectrum: Spectrum,
+    },
     /// `brightfunc … skybr skybright.cal` or `skybright perezlum.cal`: the sky over the ray's direction.
     Sky(SkyDistribution),
 }

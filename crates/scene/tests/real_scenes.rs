@@ -72,6 +72,7 @@ fn scenes_load_or_say_what_is_missing() {
         "mirror",
         "mist",
         "spotcones",
+        "ringlight",
         "spotlights",
         "trans_pane",
     ];
@@ -81,13 +82,12 @@ fn scenes_load_or_say_what_is_missing() {
     for (name, missing) in [
         ("ballcompare", "mixtext"),
         ("blinds", "the command \"pkgBSDF\" is not run"),
-        ("glass_ill", "colordata"),
+        ("glass_ill", "illum.cal"),
         ("gymbal", "BRTDfunc"),
         ("porsches", "cannot find the file \"porsche.octf\""),
         ("prism1", "prism1"),
-        ("rect_fixture", "brightdata"),
-        ("ringlight", "brightfunc"),
-        ("sunset_sky", "colorpict"),
+        ("rect_fixture", "source.cal"),
+        ("sunset_sky", "sunset.hdr"),
         ("torus", "the command \"genrev\" is not run"),
         ("woman", "cannot find the file \"woman.rtm\""),
     ] {

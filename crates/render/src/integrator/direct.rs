@@ -1,8 +1,9 @@
 //! Light that arrives from emitters: by shadow rays, and by paths that meet them.
 
 use super::{Integrator, Met, path::Path};
+use crate::accel::Hit;
 use crate::guide::Guide;
-use crate::light::{LightSample, power_heuristic};
+use crate::light::{LightSample, at_infinity, power_heuristic};
 use crate::material::{Arrival, Emitter, Inside, Smooth, reflect};
 use crate::shapes::Ray;
 use crate::transmit::Target;
@@ -58,6 +59,9 @@ impl Integrator<'_> {
         if value.total() == Rgb::ZERO || sample.radiance == Rgb::ZERO {
             return Rgb::ZERO;
         }
+        if !receiver.arrival.agrees_on(sample.direction) {
+            return Rgb::ZERO;
+        }
         let ray = Ray::new(receiver.origin(sample.direction), sample.direction);
         let transmitted = self.world.transmitted(&ray, target, receiver.inside);
         if transmitted.is_blocked() {
@@ -109,7 +113,7 @@ impl Integrator<'_> {
         }
         let onwards = Ray::new(ray.at(hit), sample.direction);
         let to_sun = world.transmitted(&onwards, &Target::sun(sun, &sample), world.inside_at(&onwards));
-        let reflectance = world.mirror_reflectance(mirror);
+        let reflectance = world.mirror_reflectance(&Hit { t: hit, object: mirror }, &ray);
         let factor = receiver.cosine(ray.direction) / sample.pdf;
         value.total() * sample.radiance * to_mirror.share * reflectance * to_sun.share * factor
     }
@@ -126,7 +130,8 @@ impl Integrator<'_> {
             return Rgb::ZERO;
         }
         let shadow_pdf = || self.world.distant.pdf(index, direction);
-        source.emitter.radiance(direction) * weight(path, &source.emitter, f64::INFINITY, shadow_pdf)
+        source.emitter.radiance(&at_infinity(direction))
+            * weight(path, &source.emitter, f64::INFINITY, shadow_pdf)
     }
 
     /// Suns are not left to chance: behind a mirror or a solid of glass that a scattered path met they are found by
@@ -153,15 +158,15 @@ impl Integrator<'_> {
             return Rgb::ZERO;
         }
         let direction = path.ray.direction;
-        let Some(departure) = path.departure else { return emitter.radiance(direction) };
+        let radiance = emitter.radiance(&arrival.ray_state()) * arrival.tint;
+        let Some(departure) = path.departure else { return radiance };
         let distance = departure.point.distance(arrival.point);
         let shadow_pdf = || {
             object.lamp.map_or(0.0, |lamp| {
                 self.world.lamps.pdf(lamp as usize, departure.point, direction, distance, arrival.normal)
             })
         };
-        emitter.radiance(direction)
-            * (emitter.falloff(distance) * weight(path, emitter, distance, shadow_pdf))
+        radiance * (emitter.falloff(distance) * weight(path, emitter, distance, shadow_pdf))
     }
 }
 

@@ -6,6 +6,7 @@ mod emitter;
 mod glass;
 mod smooth;
 mod table;
+mod varying;
 mod volume;
 mod ward;
 
@@ -15,6 +16,7 @@ pub(crate) use emitter::{Emitter, EmitterKind};
 pub(crate) use glass::Glass;
 pub(crate) use smooth::{Smooth, SmoothSample, SmoothValue};
 pub(crate) use table::Table;
+pub(crate) use varying::{Mixture, Step, Varying, fault_of, tint_of};
 pub(crate) use volume::{Air, Antimatter, Flight, Inside, Mist};
 pub(crate) use ward::WardMaterial;
 
@@ -48,6 +50,8 @@ pub(crate) enum Material {
     Mist(Mist),
     /// `antimatter`, likewise.
     Antimatter(Antimatter),
+    /// Any of these with patterns, textures or mixtures. Only the world can tell which, so that to the questions here it is nothing.
+    Varying(Varying),
 }
 
 /// A planar mirror: reflects at its front, its back is black.
@@ -68,11 +72,28 @@ pub(crate) struct Arrival {
     pub flat_normal: Vec3,
     /// Unit direction of the ray.
     pub direction: Vec3,
+    /// Local coordinates on a mesh.
+    pub local: [f64; 2],
+    /// What patterns multiply the material's colour with.
+    pub tint: Rgb,
+    /// Way of the ray since it was last scattered [m].
+    pub distance: f64,
+    /// Way since the camera [m].
+    pub travelled: f64,
 }
 
 impl Arrival {
     pub fn new(point: Vec3, normal: Vec3, direction: Vec3) -> Self {
-        Self { point, normal, flat_normal: normal, direction }
+        Self {
+            point,
+            normal,
+            flat_normal: normal,
+            direction,
+            local: [0.0; 2],
+            tint: Rgb::ONE,
+            distance: 0.0,
+            travelled: 0.0,
+        }
     }
 
     /// The same with a smoothed normal. One that looks away from the ray is mirrored to its side (as Radiance does).
@@ -101,6 +122,12 @@ impl Arrival {
     /// Cosine between the ray and the normal, positive.
     pub fn cosine(&self) -> f64 {
         self.direction.dot(self.normal).abs()
+    }
+
+    /// Is a direction on the same side of the surface as it lies and as its normal is bent?
+    pub fn agrees_on(&self, direction: Vec3) -> bool {
+        self.normal == self.flat_normal
+            || (direction.dot(self.normal) > 0.0) == (direction.dot(self.flat_normal) > 0.0)
     }
 
     /// Direction of the mirrored ray, not into the surface.
@@ -144,9 +171,9 @@ impl Material {
             Self::Glass(m) => m.scatter(arrival),
             Self::Dielectric(m) => m.scatter(arrival),
             Self::Mirror(m) if arrival.at_front() => {
-                Scattering { mirrored: m.reflectance, ..Scattering::BLACK }
+                Scattering { mirrored: m.reflectance * arrival.tint, ..Scattering::BLACK }
             }
-            Self::Mirror(_) | Self::Emitter(_) => Scattering::BLACK,
+            Self::Mirror(_) | Self::Emitter(_) | Self::Varying(_) => Scattering::BLACK,
             Self::Mist(_) | Self::Antimatter(_) => Scattering { straight: Rgb::ONE, ..Scattering::BLACK },
             Self::Table(m) => m.scatter(arrival, view),
         }
@@ -157,10 +184,10 @@ impl Material {
     pub fn straight(&self, arrival: &Arrival, direct: bool) -> Rgb {
         match self {
             Self::Ward(m) => m.straight(arrival),
-            Self::Glass(m) => m.transmittance(arrival.cosine()),
+            Self::Glass(m) => m.transmittance(arrival.cosine(), arrival.tint),
             Self::Table(m) => m.straight(arrival, direct),
             Self::Mist(_) | Self::Antimatter(_) => Rgb::ONE,
-            Self::Ashikhmin(_) | Self::Dielectric(_) | Self::Mirror(_) | Self::Emitter(_) => Rgb::ZERO,
+            _ => Rgb::ZERO,
         }
     }
 
@@ -180,7 +207,7 @@ impl Material {
             Self::Glass(_) | Self::Dielectric(_) | Self::Mist(_) | Self::Antimatter(_) => true,
             Self::Ward(m) => m.is_trans(),
             Self::Table(m) => m.is_aperture,
-            Self::Ashikhmin(_) | Self::Mirror(_) | Self::Emitter(_) => false,
+            _ => false,
         }
     }
 }

@@ -5,7 +5,7 @@ use super::{
     args::{check_counts, check_not_negative, smallest, title, triple, unsupported},
     bsdf,
     orientation::orientation,
-    patterns, volumes,
+    volumes,
 };
 use crate::{Anisotropy, Material, ModifierId, ModifierKind, Ward, raw::Primitive};
 
@@ -16,7 +16,7 @@ const GLASS_INDEX: f64 = 1.52;
 const SMALLEST_ROUGHNESS: f64 = 1e-6;
 
 impl Interpreter<'_> {
-    pub(super) fn kind_of(&self, primitive: &Primitive) -> Result<ModifierKind, Unusable> {
+    pub(super) fn kind_of(&mut self, primitive: &Primitive) -> Result<ModifierKind, Unusable> {
         let material = match primitive.kind.name {
             "plastic" | "plastic2" => Material::Plastic(ward(primitive, "")?),
             "metal" | "metal2" => Material::Metal(ward(primitive, "")?),
@@ -39,8 +39,10 @@ impl Interpreter<'_> {
             }
             "spotlight" => spotlight(primitive)?,
             "BSDF" | "aBSDF" => Material::Bsdf(bsdf::material(primitive, self.options, &self.cwd)?),
-            "brightfunc" => return Ok(ModifierKind::Pattern(patterns::bright_function(primitive)?)),
-            _ => return Err(unsupported(primitive).into()),
+            _ => {
+                let modulation = self.modulation(primitive)?;
+                return modulation.ok_or_else(|| unsupported(primitive).into());
+            }
         };
         Ok(ModifierKind::Material(material))
     }
@@ -72,6 +74,11 @@ impl Interpreter<'_> {
         let named = |name: &String| self.named(primitive, name, "the modifier that is to be clipped,");
         let modifiers = primitive.strings.iter().map(named).collect::<Result<Vec<_>, _>>()?;
         Ok(Material::Antimatter { face: modifiers[0], clipped: modifiers.into_iter().flatten().collect() })
+    }
+
+    /// A modifier that a mixture names.
+    pub(super) fn mixed(&self, primitive: &Primitive, name: &str) -> Result<Option<ModifierId>, Unusable> {
+        self.named(primitive, name, "the modifier to be mixed,")
     }
 
     fn alternate(&self, primitive: &Primitive, name: &str) -> Result<Option<ModifierId>, Unusable> {
