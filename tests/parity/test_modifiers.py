@@ -1,4 +1,4 @@
-"""Patterns, textures and mixtures against `rtrace`, on few rays: what shines is seen directly, so that no sample is random."""
+"""Patterns, textures and mixtures against `rtrace`, on few rays: what shines is seen directly, without random samples."""
 
 from pathlib import Path
 
@@ -21,7 +21,8 @@ GRID = "2\n0 2 3\n0 0 4 -1 0 .5 2\n" + " ".join(str(round(v, 3)) for v in np.sin
 FALLING = "1 90 0 10 \n" + " ".join(str(v) for v in [0, 0.05, 0.08, 0.1, 0.11, 0.12, 0.14, 0.25, 1, 10])
 FUNCTIONS = """
 half(v) = v / 2; bright(r,g,b) = r + g / 2 + b / 3; only(v) = v * v;
-stripes(n) = if(frac(n * Px) - .5, .9, .2); fine(nm) = 1.5 + sin(nm / 150 + Px); turned(v, nm) = v * (Py + 2 + nm / 550);
+stripes(n) = if(frac(n * Px) - .5, .9, .2); fine(nm) = 1.5 + sin(nm / 150 + Px);
+turned(v, nm) = v * (Py + 2 + nm / 550);
 local = A1 * Px + A2; A3x : 3; only01(r,g,b) = if(r - 1, 1, 0); if01(v) = if(v - 2, 1, 0);
 tex(a,b,c) = .1 * a * (b - c / 2); half3(a,b,c) = a / 9;
 """
@@ -62,7 +63,7 @@ PATTERNS = {
     "mirrored frame": "colorfunc p 11 Px+3 Dy+2 Nz+2 . -mx -rz 20 -t 1 0 0 0 0",
     "axes": f"colorfunc p 14 S+Ix+1+.1*Px Ty+Jy+3 Kz+Jx+2 . {MOVED} 0 0",
     "coordinates": "colorfunc p 4 U+3 V+3 D(1)+N(2)+P(3)+4 . 0 0",
-    "noise": "colorfunc p 4 noise3(Px*4,Py*4,Pz*4)+1 noise3x(Px*4,Py*4,Pz*4)+3 noise3y(Px,Py,Pz)+noise3z(Px,Py,Pz)+5 . 0 0",
+    "noise": "colorfunc p 4 noise3(Px*4,Py*4,Pz*4)+1 noise3x(Px*4,Py,Pz)+3 noise3y(Px,Py,Pz)+noise3z(Px,Py,Pz)+5 . 0 0",
     "fractal noise": "brightfunc p 2 fnoise3(Px*9,Py*9,Pz*9)+1 . 0 0",
     "turbulence": "colorfunc p 4 turbulence(Px,Py,Pz,.01) turbulencex(Px,Py,Pz,.1)+4 turbulencez(Px,Py,Pz,.1)+4 . 0 0",
     "arguments": "brightfunc p 2 local+A3x+arg(2) mine.cal 0 2 .3 .7",
