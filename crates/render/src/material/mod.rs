@@ -184,7 +184,7 @@ impl Material {
     pub fn straight(&self, arrival: &Arrival, direct: bool) -> Rgb {
         match self {
             Self::Ward(m) => m.straight(arrival),
-            Self::Glass(m) => m.transmittance(arrival.cosine(), arrival.tint),
+            Self::Glass(m) => m.transmittance(arrival.cosine()) * arrival.tint,
             Self::Table(m) => m.straight(arrival, direct),
             Self::Mist(_) | Self::Antimatter(_) => Rgb::ONE,
             _ => Rgb::ZERO,

@@ -71,10 +71,17 @@ impl Spectrum {
         &self.wavelengths_nm
     }
 
-    /// The colour of a spectrum; channels that its colour would need to be negative are 0.
+    /// The colour of a spectrum. One outside of what the primaries can show is mixed with so much grey of the same luminance that no
+    /// channel is negative, as in Radiance.
     pub fn color(&self, samples: impl IntoIterator<Item = f64>) -> Rgb {
         let xyz: Vec3 = self.weights.iter().zip(samples).map(|(weight, sample)| *weight * sample).sum();
-        xyz_to_rgb(xyz).max(Rgb::ZERO)
+        let (color, grey) = (xyz_to_rgb(xyz), Rgb::splat(xyz.y.max(0.0)));
+        let lowest = color.min_element();
+        if lowest >= 0.0 {
+            return color;
+        }
+        let share = grey.x / (grey.x - lowest);
+        (grey + (color - grey) * share).max(Rgb::ZERO)
     }
 }
 
