@@ -8,6 +8,7 @@ use crate::guide::Guide;
 use crate::light::{DistantSources, Lamps};
 use crate::material::{
     Air, Alternate, Arrival, Emitter, EmitterKind, Inside, Material, MaterialId, fault_of,
+    fault_of_orientation,
 };
 use crate::shapes::{COINCIDENT, MeshSurface, Ray};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -288,6 +289,8 @@ impl World {
         let fault = |material: &Material| match material {
             Material::Varying(varying) => varying.fault(),
             Material::Emitter(emitter) => fault_of(&emitter.patterns),
+            Material::Ward(ward) => ward.fault(),
+            Material::Ashikhmin(m) => fault_of_orientation(&m.orientation),
             _ => None,
         };
         self.materials.iter().find_map(fault).map_or(Ok(()), Err)

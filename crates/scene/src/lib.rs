@@ -30,7 +30,7 @@ pub use files::LoadOptions;
 pub use load::load_primitives;
 pub use picture::{BlockErrors, ExactSource, Picture};
 pub use scene::{
-    Anisotropy, BsdfMaterial, Material, Medium, Mesh, Modifier, ModifierId, ModifierKind, Pattern, Scene,
-    Shape, Surface, Ward,
+    Anisotropy, BsdfMaterial, Material, Medium, Mesh, Modifier, ModifierId, ModifierKind, Orientation,
+    Pattern, Scene, Shape, Surface, Ward,
 };
 pub use view::{Camera, PixelRay, View, ViewKind, ViewRay};

@@ -20,7 +20,8 @@ pub(crate) use varying::{Mixture, Step, Varying, fault_of, tint_of};
 pub(crate) use volume::{Air, Antimatter, Flight, Inside, Mist};
 pub(crate) use ward::WardMaterial;
 
-use sunpeak_core::{Rgb, Vec3};
+use sunpeak_core::{Error, Rgb, Vec3};
+use sunpeak_scene::Orientation;
 
 /// Index of a compiled material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -130,11 +131,30 @@ impl Arrival {
             || (direction.dot(self.normal) > 0.0) == (direction.dot(self.flat_normal) > 0.0)
     }
 
+    /// The vector by which an anisotropic material is turned here; zero where its mathematics fails.
+    pub fn orientation(&self, orientation: &Orientation) -> Vec3 {
+        match orientation {
+            Orientation::Fixed(vector) => *vector,
+            Orientation::Varying(field) => {
+                let vector = field.values(&self.ray_state()).map(|v: [f64; 3]| Vec3::from_array(v));
+                vector.map_or(Vec3::ZERO, |v| field.world_direction(v))
+            }
+        }
+    }
+
     /// Direction of the mirrored ray, not into the surface.
     pub fn mirrored(&self) -> Vec3 {
         let mirrored = reflect(self.direction, self.normal);
         let is_outside = (mirrored.dot(self.flat_normal) > 0.0) == self.at_front();
         if is_outside { mirrored } else { reflect(self.direction, self.flat_normal) }
+    }
+}
+
+/// What an evaluation of an orientation has found to be wrong.
+pub(crate) fn fault_of_orientation(orientation: &Orientation) -> Option<Error> {
+    match orientation {
+        Orientation::Fixed(_) => None,
+        Orientation::Varying(field) => field.fault(),
     }
 }
 

@@ -365,9 +365,12 @@ impl<'s> Compiler<'s> {
             Said::Interface { inside, outside } => {
                 Material::Dielectric(Dielectric::interface(inside, outside))
             }
-            &Said::Ashikhmin { diffuse, specular, powers, orientation } => {
-                Material::Ashikhmin(Ashikhmin { diffuse, specular, powers, orientation })
-            }
+            Said::Ashikhmin { diffuse, specular, powers, orientation } => Material::Ashikhmin(Ashikhmin {
+                diffuse: *diffuse,
+                specular: *specular,
+                powers: *powers,
+                orientation: orientation.clone(),
+            }),
             &Said::Mist { extinction, albedo, eccentricity, .. } => {
                 Material::Mist(Mist { extinction, albedo, eccentricity })
             }
