@@ -2,6 +2,7 @@
 
 use std::{path::PathBuf, sync::Arc};
 use sunpeak_bsdf::{Bsdf, PeakRule};
+use sunpeak_core::Rgb;
 
 /// How a scene is compiled.
 #[derive(Clone, Debug, Default)]
@@ -30,6 +31,8 @@ pub struct RenderOptions {
     /// Skies and far `glow`s are found by indirect rays, so they need one bounce; scattering by rough highlights and by BSDF
     /// tables is no bounce, as in Radiance.
     pub max_bounces: Option<u32>,
+    /// Radiance's `-av`: radiance [W sr⁻¹ m⁻²] that stands for all diffuse light past `max_bounces`.
+    pub ambient: Rgb,
     /// Surfaces of any kind that a path may meet; a safeguard, since paths end by Russian roulette.
     pub max_depth: u32,
     /// Threads to use; `None` is all cores.
@@ -52,6 +55,7 @@ impl Default for RenderOptions {
             time_s: None,
             seed: 0,
             max_bounces: None,
+            ambient: Rgb::ZERO,
             max_depth: DEFAULT_MAX_DEPTH,
             threads: None,
             exact_suns: true,

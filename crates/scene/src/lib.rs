@@ -11,6 +11,7 @@
 //! # Ok::<(), sunpeak_core::Error>(())
 //! ```
 
+mod check;
 mod command;
 mod disc_coverage;
 mod files;
@@ -21,9 +22,10 @@ pub mod raw;
 mod scene;
 mod view;
 
+pub use check::SceneCheck;
 pub use disc_coverage::disc_coverage;
 pub use files::LoadOptions;
-pub use load::load_primitives;
+pub use load::{Source, load_primitives};
 pub use picture::{BlockErrors, ExactSource, Picture};
 pub use scene::{
     BsdfMaterial, Material, Modifier, ModifierId, ModifierKind, Pattern, Scene, Shape, Surface, Ward,

@@ -35,6 +35,8 @@ pub(super) struct Path {
     pub is_distorted: bool,
     /// Direction of the first segment.
     pub first_direction: Vec3,
+    /// What the light past the last diffuse bounce adds at the end.
+    pub ambient: Rgb,
     /// Extinction of the medium [1/m].
     extinction: Rgb,
 }
@@ -52,6 +54,7 @@ impl Path {
             is_past_peak: false,
             is_distorted: false,
             first_direction: ray.direction,
+            ambient: Rgb::ZERO,
             extinction: Rgb::ZERO,
         }
     }
