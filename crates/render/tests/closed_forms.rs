@@ -255,7 +255,8 @@ fn of_two_panes_at_the_same_place_one_counts() {
 #[test]
 fn ambient_light_stands_for_what_lies_past_the_last_bounce() {
     // Between walls of reflectance rho every diffuse bounce dims what stands for the rest by rho.
-    let (rho, dark) = (0.6, world(&white_box(0.6, "")));
+    let rho = 0.6_f64;
+    let dark = world(&white_box(rho, ""));
     let inside = Vec3::new(1.0, 1.0, 1.0);
     for bounces in 0..3 {
         let ambient = Rgb::new(2.0, 1.0, 0.5);

@@ -50,6 +50,8 @@ SOURCES = (
     "glare_zone r_contrast r_dgp"
 )
 NOT_KNOWN = math.nan
+EV_EXPONENT = 1.87
+"""Of Ev under DGP's contrasts (Wienold and Christoffersen 2006)."""
 CHECK_COLOURS = ((1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (1, 0, 1), (0, 1, 1))
 """Of sources in the check picture, in turn."""
 
@@ -66,13 +68,17 @@ def run(arguments: list[str]) -> int:
     picture = read_picture(line)
     task = task_of(line, picture)
     stated = stated_options(line, task)
-    report = glare(picture, rules="evalglare-3", ev_lux=ev_of(line), **stated)
+    report = glare(picture, rules="evalglare-3", **stated)
     sys.stderr.writelines(f"evalglare: warning - {warning}\n" for warning in report.warnings if line.is_on("-w"))
     if line.is_on("-V"):
         # The exit status is the program's own habit.
         sys.stdout.write(f"{report.ev_lux:f}\n")
         return 1
-    sys.stdout.write(text(line, picture, report))
+    dgp = report.dgp
+    if line.has("-i"):
+        # A stated illuminance counts for DGP alone.
+        dgp = glare(picture, rules="evalglare-3", ev_lux=line.number("-i", 0.0), **stated).dgp
+    sys.stdout.write(text(line, picture, report, dgp))
     if line.has("-c"):
         write_check_picture(line, picture, stated)
     return 0
@@ -94,20 +100,15 @@ def read_picture(line: CommandLine) -> Picture:
     return picture
 
 
-def ev_of(line: CommandLine) -> float | None:
-    """Vertical illuminance that is stated."""
-    return line.number("-i", 0.0) if line.has("-i") else None
-
-
 def task_of(line: CommandLine, picture: Picture) -> Task | None:
-    """Task zone: pixel from the left and from the top, opening angle [rad]."""
+    """Task zone: pixel from the left and from the bottom, opening angle [rad]."""
     option = "-t" if line.has("-t") else "-T"
     if not line.has(option):
         return None
     x, y, opening = line.numbers(option, [])
     height, width = picture.shape
     view = the_view(picture)
-    _, directions, _ = view._core.rays_at(np.array([[(x + 0.5) / width, 1 - (y + 0.5) / height]]))
+    _, directions, _ = view._core.rays_at(np.array([[(x + 0.5) / width, (y + 0.5) / height]]))
     if not np.isfinite(directions).all():
         raise InputError(f"{option} {x} {y}: no pixel of the view; the picture has {width} x {height} pixels")
     towards = directions[0].tolist()
@@ -140,9 +141,9 @@ def stated_options(line: CommandLine, task: Task | None) -> dict[str, Any]:
     return stated
 
 
-def text(line: CommandLine, picture: Picture, report: GlareReport) -> str:
+def text(line: CommandLine, picture: Picture, report: GlareReport, dgp: float) -> str:
     """All lines of the result."""
-    ratings = [report.dgp, *(or_zero(value) for value in (report.dgi, report.ugr))]
+    ratings = [dgp, *(or_zero(value) for value in (report.dgi, report.ugr))]
     ratings += [100.0 if report.vcp is None else report.vcp, or_zero(report.cgi)]
     if line.is_on("-D"):
         return f"{EXTENDED}: {numbers([*ratings, 0.0, report.ev_lux, report.max_luminance_cd_m2, NOT_KNOWN])} \n"
@@ -216,7 +217,6 @@ def source_line(number: int, source: GlareSource, picture: Picture, report: Glar
     """One source."""
     height, width = picture.shape
     x, y = the_view(picture).project([source.direction])[0]
-    weights = sum(other.weight for other in report.sources)
     angle = source.angle_to_sight_deg
     # Stiles and Holladay, as in Lveil_cie of the whole.
     veil = 10.0 * source.illuminance_lux / angle**2 if angle > 0 else math.inf
@@ -225,8 +225,15 @@ def source_line(number: int, source: GlareSource, picture: Picture, report: Glar
         source.position_index, report.background_cd_m2, task_luminance(report), report.ev_lux, report.ev_sources_lux,
         report.max_luminance_cd_m2, angle, *source.direction, source.illuminance_lux, veil, angle,
     ]  # fmt: skip
-    shares = [source.weight / weights if weights else 0.0, source.dgp_part / report.dgp if report.dgp else 0.0]
+    # A source alone over all of them, each as a logarithm: the shares add up to more than 1.
+    share = contrast(report, [source]) / contrast(report, report.sources)
+    shares = [share, share * report.dgp_contrast_term / report.dgp]
     return f"{number} {numbers(first)} {source.solid_angle_sr:.10f} {numbers(middle)} 0 {numbers(shares)} "
+
+
+def contrast(report: GlareReport, sources: list[GlareSource]) -> float:
+    """Logarithm of DGP's contrast term for some of the sources."""
+    return math.log10(1 + sum(source.weight for source in sources) / report.ev_lux**EV_EXPONENT)
 
 
 def task_luminance(report: GlareReport) -> float:

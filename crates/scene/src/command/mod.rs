@@ -1,7 +1,8 @@
-//! Commands in scene files, done inside: `xform`, `genbox`, `gensky`, `gendaylit`, `cat`, and pipes of them.
+//! Commands in scene files, done inside: `xform`, `genbox` and other generators, `gensky`, `gendaylit`, `cat`, and pipes of them.
 
 mod genbox;
 mod genbox_round;
+mod generate;
 mod outside;
 mod run;
 mod shell;
