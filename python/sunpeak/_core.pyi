@@ -193,5 +193,6 @@ def trace(
     threads: int | None,
     max_bounces: int | None,
     ambient: tuple[float, float, float],
+    error_of_each: bool,
     progress: Callable[[int, int], None] | None,
 ) -> _Floats: ...

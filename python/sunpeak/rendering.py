@@ -96,6 +96,7 @@ def trace(
     samples: int | None = None,
     time: float | None = None,
     error: float | None = None,
+    error_of_each: bool = False,
     seed: int = 0,
     threads: int | None = None,
     max_bounces: int | None = None,
@@ -105,8 +106,9 @@ def trace(
     """Radiance along rays (n, 3) [W sr⁻¹ m⁻²], or irradiance at sensors [W m⁻²]: three channels (n, 3).
 
     `origins` (n, 3) are points [m]; `directions` (n, 3) are where the rays go, or the normals of the sensors; their
-    length does not count. The other arguments are those of `render`. 179 (0.265 R + 0.670 G + 0.065 B) gives
-    luminance [cd/m²] or illuminance [lx].
+    length does not count. `error` is relative to the mean of all; with `error_of_each` that of each ray is relative to
+    its own, so that a dark sensor counts as much as a bright one. The other arguments are those of `render`.
+    179 (0.265 R + 0.670 G + 0.065 B) gives luminance [cd/m²] or illuminance [lx].
     """
     points, towards = rows(origins), normalized(rows(directions))
     if len(points) != len(towards):
@@ -125,6 +127,7 @@ def trace(
             threads,
             max_bounces,
             ambient,
+            error_of_each,
             callback,
         )
 

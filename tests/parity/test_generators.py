@@ -1,4 +1,4 @@
-"""Programs that make surfaces, done inside, against Radiance's: names, order and every number as far as it is printed."""
+"""Programs that make surfaces, done inside, against Radiance's: names, order, and numbers as printed."""
 
 import shlex
 from pathlib import Path

@@ -114,9 +114,11 @@ pub fn trace<'py>(
     threads: Option<usize>,
     max_bounces: Option<u32>,
     ambient: [f64; 3],
+    error_of_each: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Rows<'py>> {
     let options = options(samples, time_s, error, seed, threads, max_bounces, ambient);
+    let options = RenderOptions { error_of_each, ..options };
     let (points, towards) = (vectors(&origins, "origins")?, vectors(&directions, "directions")?);
     if points.len() != towards.len() {
         return Err(InputError::new_err("origins and directions: expected as many rows of both"));

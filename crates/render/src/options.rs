@@ -23,6 +23,8 @@ pub struct RenderOptions {
     /// standard error of their luminance, relative to the mean luminance of all. Exact suns have none. With `samples` or
     /// `time_s` whatever comes first.
     pub error: Option<f64>,
+    /// Is `error` that of each ray or sensor relative to its own mean, so that a dark one counts as much as a bright one?
+    pub error_of_each: bool,
     /// Time to spend [s]: passes go on until the next one would not fit. At least one path each.
     pub time_s: Option<f64>,
     /// The same seed and number of paths give the same result, on any number of threads.
@@ -52,6 +54,7 @@ impl Default for RenderOptions {
         Self {
             samples: None,
             error: None,
+            error_of_each: false,
             time_s: None,
             seed: 0,
             max_bounces: None,

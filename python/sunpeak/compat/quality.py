@@ -1,13 +1,13 @@
 """Radiance's quality options as samples and a statistical error.
 
 `-ad N` is the number of directions in which Radiance looks for indirect light. Here it says how long: paths are traced
-until the standard error is `ERROR_AT_ONE / sqrt(N)` of the mean, or up to a number of paths that grows with N. `-ab`
-limits the diffuse bounces and `-av` is what lies past them. Options of our own, with two dashes, overrule both.
+until the standard error is `ERROR_AT_ONE / sqrt(N)` of the mean (each sensor's own, or that of a picture's blocks over
+the picture's), or up to a number of paths that grows with N. `-ab` limits the diffuse bounces and `-av` is what lies
+past them. Options of our own, with two dashes, overrule both.
 """
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 from sunpeak._core import InputError
 from sunpeak.compat.options import CommandLine
@@ -40,6 +40,8 @@ class Quality:
 
     samples: int | None
     error: float | None
+    error_of_each: bool
+    """Whether it is that of each ray relative to its own mean."""
     time: float | None
     seed: int
     peak: str
@@ -47,22 +49,10 @@ class Quality:
     max_bounces: int
     ambient: tuple[float, float, float]
 
-    def keywords(self) -> dict[str, Any]:
-        """Give the keywords of `render` and `trace`."""
-        return {
-            "samples": self.samples,
-            "error": self.error,
-            "time": self.time,
-            "seed": self.seed,
-            "threads": self.threads,
-            "max_bounces": self.max_bounces,
-            "ambient": self.ambient,
-        }
-
 
 def sensors(line: CommandLine, directions: int) -> Quality:
     """Read the options for single rays and sensors; `directions` is the program's own `-ad`."""
-    return quality(line, directions, paths=PATHS_PER_DIRECTION, looseness=1.0)
+    return quality(line, directions, paths=PATHS_PER_DIRECTION, looseness=1.0, each=True)
 
 
 def rays_of_picture(line: CommandLine, directions: int) -> Quality:
@@ -75,7 +65,7 @@ def picture(line: CommandLine, directions: int) -> Quality:
     return quality(line, directions, paths=1, looseness=1.0)
 
 
-def quality(line: CommandLine, directions: int, paths: int, looseness: float) -> Quality:
+def quality(line: CommandLine, directions: int, paths: int, looseness: float, *, each: bool = False) -> Quality:
     """Turn the options into samples and an error."""
     chosen = max(line.whole("-ad", directions), 1)
     bounces = line.whole("-ab", 0)
@@ -92,6 +82,7 @@ def quality(line: CommandLine, directions: int, paths: int, looseness: float) ->
     return Quality(
         samples=samples,
         error=error,
+        error_of_each=each,
         time=time,
         seed=line.whole("--seed", 0),
         peak=line.values.get("--peak", ["split"])[0],

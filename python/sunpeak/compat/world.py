@@ -64,5 +64,5 @@ class CompiledScene:
         q = quality
         return _core.trace(
             self.world, np.ascontiguousarray(origins), np.ascontiguousarray(directions), irradiance, q.samples, q.time,
-            q.error, q.seed, q.threads, q.max_bounces, q.ambient, None,
+            q.error, q.seed, q.threads, q.max_bounces, q.ambient, q.error_of_each, None,
         )  # fmt: skip
