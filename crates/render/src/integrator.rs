@@ -28,12 +28,14 @@ const ROULETTE_CEILING: f64 = 0.95;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limits {
     pub max_bounces: Option<u32>,
+    /// Radiance of all that lies past the last diffuse bounce.
+    pub ambient: Rgb,
     pub max_depth: u32,
 }
 
 impl Limits {
     pub fn of(options: &RenderOptions) -> Self {
-        Self { max_bounces: options.max_bounces, max_depth: options.max_depth }
+        Self { max_bounces: options.max_bounces, ambient: options.ambient, max_depth: options.max_depth }
     }
 }
 
@@ -60,7 +62,7 @@ impl Integrator<'_> {
         let mut path = Path::from_camera(ray, f64::INFINITY, self.world.inside_at(&ray));
         let direct = self.direct(&path, &sensor, sampler);
         if !self.scatter(&mut path, &sensor, sampler) {
-            return direct;
+            return direct + path.ambient;
         }
         direct + self.trace(path, sampler)
     }
@@ -104,7 +106,7 @@ impl Integrator<'_> {
                         sum += path.throughput * self.direct(&path, &met, sampler);
                     }
                     if !self.go_on(&mut path, &met, sampler) || !survives(&mut path, sampler) {
-                        return sum;
+                        return sum + path.ambient;
                     }
                 }
             }
@@ -147,6 +149,8 @@ impl Integrator<'_> {
             let diffuse = luminance(sample.weight.diffuse) / luminance(weight);
             let is_diffuse = sampler.next_1d() < diffuse;
             if is_diffuse && path.bounces >= limit {
+                path.ambient =
+                    path.throughput * sample.weight.diffuse / (diffuse * share) * self.limits.ambient;
                 return false;
             }
             weight = if is_diffuse {

@@ -18,6 +18,8 @@ use sunpeak_scene::Scene;
 pub struct World {
     pub(crate) accel: Accel,
     pub(crate) objects: Vec<Object>,
+    /// Of each object: which surface of the scene it is.
+    pub(crate) surfaces: Vec<u32>,
     pub(crate) materials: Vec<Material>,
     pub(crate) distant: DistantSources,
     pub(crate) lamps: Lamps,

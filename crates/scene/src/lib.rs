@@ -12,6 +12,7 @@
 //! # Ok::<(), sunpeak_core::Error>(())
 //! ```
 
+mod check;
 mod command;
 mod compiled;
 mod disc_coverage;
@@ -23,9 +24,10 @@ pub mod raw;
 mod scene;
 mod view;
 
+pub use check::SceneCheck;
 pub use disc_coverage::disc_coverage;
 pub use files::LoadOptions;
-pub use load::load_primitives;
+pub use load::{Source, load_primitives};
 pub use picture::{BlockErrors, ExactSource, Picture};
 pub use scene::{
     Anisotropy, BsdfMaterial, Material, Medium, Mesh, Modifier, ModifierId, ModifierKind, Pattern, Scene,

@@ -35,6 +35,8 @@ pub(super) struct Path {
     pub is_distorted: bool,
     /// Direction of the first segment.
     pub first_direction: Vec3,
+    /// What the light past the last diffuse bounce adds at the end.
+    pub ambient: Rgb,
     /// Extinction of the solid that the path is in [1/m].
     extinction: Rgb,
     /// Mist and antimatter that the path is in.
@@ -54,6 +56,7 @@ impl Path {
             is_past_peak: false,
             is_distorted: false,
             first_direction: ray.direction,
+            ambient: Rgb::ZERO,
             extinction: Rgb::ZERO,
             inside,
         }

@@ -29,7 +29,8 @@ const NO_THICKNESS: f64 = 1e-6;
 
 pub(super) fn compile(scene: &Scene, options: &WorldOptions) -> Result<World> {
     let mut compiler = Compiler::new(scene, options);
-    for surface in &scene.surfaces {
+    for (index, surface) in scene.surfaces.iter().enumerate() {
+        compiler.current = index as u32;
         compiler.add(surface)?;
     }
     compiler.finish()
@@ -51,6 +52,10 @@ struct Compiler<'s> {
     meshes: Vec<SmoothMesh>,
     /// Of each object: where its modifier stands in the scene. Of surfaces at the same place the later is seen.
     ranks: Vec<u32>,
+    /// Of each object: which surface of the scene it is.
+    surfaces: Vec<u32>,
+    /// The surface that is being taken in.
+    current: u32,
 }
 
 impl<'s> Compiler<'s> {
@@ -70,6 +75,8 @@ impl<'s> Compiler<'s> {
             shades: Vec::new(),
             meshes: Vec::new(),
             ranks: Vec::new(),
+            surfaces: Vec::new(),
+            current: 0,
         }
     }
 
@@ -81,6 +88,7 @@ impl<'s> Compiler<'s> {
         Ok(World {
             accel: Accel::build(self.primitives, self.analytic)?,
             objects: self.objects,
+            surfaces: self.surfaces,
             materials: self.materials,
             distant,
             lamps: Lamps::new(self.lamps),
@@ -230,6 +238,7 @@ impl<'s> Compiler<'s> {
             (Material::Mirror(_), Facing::Flat(_)) => self.mirrors.push(object),
             _ => {}
         }
+        self.surfaces.push(self.current);
         self.ranks.push(surface.modifier.map_or(0, |id| id.0 as u32));
         self.objects.push(Object { material, facing, lamp: None });
         Ok(object)
