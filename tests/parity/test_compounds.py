@@ -189,6 +189,5 @@ def test_damaged_files_end_in_a_message(
         try:
             sp.Scene.parse(scene)
         except sp.InputError as error:
-            refused += 1
-            assert str(error)
+            refused += bool(str(error))
     assert refused >= len(lengths)
