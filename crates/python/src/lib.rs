@@ -40,7 +40,7 @@ mod _core {
     #[pymodule_export]
     use super::render::{PyWorld, render, trace};
     #[pymodule_export]
-    use super::scene::{PyScene, PyView};
+    use super::scene::{PyScene, PyView, expanded_scene};
     #[pymodule_export]
     use super::sky::PySky;
     #[pymodule_export]

@@ -70,13 +70,16 @@ impl FunctionFiles {
         let mut parsed = Vec::new();
         for &index in plan.expressions {
             parsed.push(
-                self.definitions.expression(&strings[index], &primitive.location, &context).map_err(told)?,
+                self.definitions
+                    .expression(&strings[index], &primitive.location, &context)
+                    .map_err(|error| told(error, primitive))?,
             );
         }
         for &(index, count) in plan.functions {
             parsed.push(self.definitions.call(&strings[index], count, &primitive.location, &context));
         }
-        let program = self.definitions.compile(&parsed, &primitive.reals).map_err(told)?;
+        let program =
+            self.definitions.compile(&parsed, &primitive.reals).map_err(|error| told(error, primitive))?;
         Ok(Field {
             program,
             takes_all: plan.functions.iter().map(|(_, count)| *count == plan.arrays.len()).collect(),
@@ -129,9 +132,9 @@ impl FunctionFiles {
 }
 
 /// The primitive's own place is said once, where the message ends up; a place in a function file is kept.
-fn told(error: Error) -> String {
+fn told(error: Error, primitive: &Primitive) -> String {
     match error {
-        Error::Input { location, message } if !location.file.is_empty() && location.column > 0 => {
+        Error::Input { location, message } if location != primitive.location && !location.file.is_empty() => {
             format!("{location}: {message}")
         }
         Error::Input { message, .. } => message,
