@@ -17,6 +17,7 @@ from sunpeak.studies import (
     markdown,
     run_peaks,
     run_table1,
+    table1_targets,
     write_figure2,
     write_figures,
     write_table1,
@@ -130,6 +131,7 @@ def table1(
     [dim]$[/dim] [cyan]sunpeak study table1 -o quick --size 250 --samples 8 --no-radiance[/cyan]
     """
     output.mkdir(parents=True, exist_ok=True)
+    table1_targets(output)
     asked = radiance_if(radiance, "Sunpeak's numbers stand alone beside the paper's", quiet)
     plan = Table1Plan(output, size, samples, asked, radiance_size, threads)
     found = []

@@ -40,6 +40,7 @@ DEMO_ROOM = Room(
     text=room_text(),
     shade=upright("fabric", "shade", 0.0, X_M, (0, HEIGHT_M)),
     glazing=GLAZING,
+    extent_m=40.0,
     # Seen through the fabric at 35.4 degrees from its normal: 52 % of the cut-off angle.
     sun=SunPosition(altitude_deg=32.0, azimuth_deg=196.0),
     # A hazy day.

@@ -39,6 +39,7 @@ TEST_ROOM = Room(
     text=room_text(),
     shade=upright("fabric", "shade", 0.0, X_M, (SILL_M, HEIGHT_M)),
     glazing=GLAZING,
+    extent_m=DEPTH_M,
     sun=SunPosition(altitude_deg=35.0, azimuth_deg=222.0),
     direct_normal_w_m2=345.0,
     diffuse_horizontal_w_m2=50.0,

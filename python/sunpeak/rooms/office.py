@@ -27,7 +27,6 @@ TREES: tuple[tuple[Point, float], ...] = (
     ((-7.5, -15.0, 3.4), 2.1),
     ((-9.4, -16.0, 2.8), 1.6),
     ((-6.3, -16.5, 2.5), 1.5),
-    ((2.0, -30.0, 3.5), 2.6),
 )
 """Middles and radii of the crowns [m]."""
 
@@ -47,7 +46,6 @@ def office_text() -> str:
         plastic("screen", 0.05, 0.05, 0.05),
         plastic("leaves", 0.08, 0.14, 0.05),
         plastic("bark", 0.12, 0.09, 0.06),
-        plastic("plaster", 0.45, 0.4, 0.36),
         plastic("black", 0, 0, 0),
         glass("clear_glass", GLAZING.transmissivity),
         inside(X_M, (0.0, DEPTH_M), HEIGHT_M),
@@ -98,8 +96,8 @@ def furniture() -> str:
 
 
 def outside() -> str:
-    """Write trees and a building far away."""
-    parts = [box("plaster", "building", (-40, -75, -4), (-24, -65, 9))]
+    """Write the trees."""
+    parts = []
     for n, (middle, radius) in enumerate(TREES):
         x, y, z = middle
         parts.append(sphere("leaves", f"crown_{n}", middle, radius))
@@ -117,6 +115,7 @@ OFFICE = Room(
         (OPENING_Z_M[0] - OVERLAP_M, OPENING_Z_M[1] + OVERLAP_M),
     ),
     glazing=GLAZING,
+    extent_m=24.0,
     # 49 degrees from the fabric's normal.
     sun=SunPosition(altitude_deg=40.0, azimuth_deg=212.0),
     direct_normal_w_m2=260.0,

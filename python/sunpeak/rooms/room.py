@@ -38,6 +38,8 @@ class Room:
     """Surfaces of the fabric; their modifier is `fabric`."""
     glazing: Glazing
     """Of what the sun comes through."""
+    extent_m: float
+    """Longest side of a box around everything; Radiance's ambient cache is set by it."""
     sun: SunPosition
     direct_normal_w_m2: float
     diffuse_horizontal_w_m2: float

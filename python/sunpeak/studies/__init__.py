@@ -6,7 +6,7 @@ from sunpeak.studies.figures_report import write_figures
 from sunpeak.studies.peaks import Plan, run_peaks
 from sunpeak.studies.peaks_report import markdown
 from sunpeak.studies.table1 import Table1Plan, run_table1
-from sunpeak.studies.table1_report import write_table1
+from sunpeak.studies.table1_report import table1_targets, write_table1
 
 __all__ = [
     "FiguresPlan",
@@ -15,6 +15,7 @@ __all__ = [
     "markdown",
     "run_peaks",
     "run_table1",
+    "table1_targets",
     "write_figure2",
     "write_figures",
     "write_table1",

@@ -34,9 +34,9 @@ class FiguresPlan:
     """How much of it."""
 
     folder: Path
-    size: int = 600
+    size: int = 500
     """Pixels across: of the fisheye, and of the view across the room."""
-    samples: int = 64
+    samples: int = 32
     radiance: Radiance | None = None
     """Where to ask Radiance and evalglare as well."""
     radiance_size: int = 1000

@@ -3,6 +3,7 @@
 import importlib.util
 import os
 import subprocess
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Self
@@ -42,7 +43,7 @@ class Radiance:
         return answer
 
     def run_together(
-        self, commands: list[tuple[object, ...]], *, data: str = "", folder: Path | None = None
+        self, commands: Sequence[tuple[object, ...]], *, data: str = "", folder: Path | None = None
     ) -> list[bytes]:
         """What programs print that run at the same time, all with the same input; none outlives this call."""
         started = [self.start(*command, folder=folder) for command in commands]

@@ -17,8 +17,12 @@ from sunpeak.studies.radiance import Radiance, RadianceError
 MATERIALS: dict[str, Material] = {"off": "BSDF", "radiance": "aBSDF"}
 """Radiance's material by the rule of peak extraction: a `BSDF` is the table as it is, an `aBSDF` has its peak taken."""
 
-OPTIONS = (
-    *("-ps", 1, "-pj", 0, "-ab", 4, "-ad", 512, "-as", 128, "-aa", 0.2, "-ar", 32),
+AMBIENT_ACCURACY = 0.2
+AMBIENT_SPACING_M = 1 / 32
+"""The ambient cache keeps values as close as this: its resolution (`-ar`) follows from the scene's extent."""
+
+OPTIONS: tuple[object, ...] = (
+    *("-ps", 1, "-pj", 0, "-ab", 4, "-ad", 512, "-as", 128, "-aa", AMBIENT_ACCURACY),
     *("-lw", 1e-4, "-ss", 1, "-st", 0.01, "-dc", 1, "-dt", 0, "-w"),
 )
 """Each pixel a ray through its middle, four diffuse bounces with the ambient cache, all of the sun's light."""
@@ -47,6 +51,13 @@ class RadianceScene:
     room: Room
     folder: Path
     basis: str
+    options: tuple[object, ...] = OPTIONS
+    """Of `rpict`."""
+
+    @property
+    def ambient_resolution(self) -> int:
+        """Radiance keeps no ambient values closer than the extent of the scene times `-aa` over this."""
+        return round(self.room.extent_m * AMBIENT_ACCURACY / AMBIENT_SPACING_M)
 
     def cases(self, size: int) -> list[RadianceCase]:
         """Render what the eye sees, `size` pixels across, and judge it."""
@@ -64,8 +75,9 @@ class RadianceScene:
             octrees = {peak: Path(stack.enter_context(NamedTemporaryFile(suffix=".oct")).name) for peak in MATERIALS}
             for peak, octree in octrees.items():
                 octree.write_bytes(self.radiance.run("oconv", *files, shades[peak], folder=self.folder))
-            commands: list[tuple[object, ...]] = [
-                ("rpict", *view.split(), *OPTIONS, "-o", stack.enter_context(whole_file(target)).name, octrees[peak])
+            asked = ("rpict", *view.split(), *self.options, "-ar", self.ambient_resolution)
+            commands = [
+                (*asked, "-o", stack.enter_context(whole_file(target)).name, octrees[peak])
                 for peak, target in targets.items()
             ]
             self.radiance.run_together(commands, folder=self.folder)

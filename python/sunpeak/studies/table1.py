@@ -25,7 +25,7 @@ class Table1Plan:
     folder: Path
     size: int = 500
     """Pixels across a fisheye of ours."""
-    samples: int = 32
+    samples: int = 16
     radiance: Radiance | None = None
     """Where to ask Radiance and evalglare as well."""
     radiance_size: int = 1000

@@ -21,7 +21,7 @@ PANEL_INCHES = 2.1
 FIGURE_DPI = 100
 
 
-def targets(folder: Path) -> tuple[Path, Path, Path]:
+def table1_targets(folder: Path) -> tuple[Path, Path, Path]:
     """Give the names of the Markdown, JSON and PNG files, which must be possible."""
     paths = folder / "table1.md", folder / "table1.json", folder / "table1.png"
     for path in paths:
@@ -31,7 +31,7 @@ def targets(folder: Path) -> tuple[Path, Path, Path]:
 
 def write_table1(folder: Path, found: list[Found]) -> list[Path]:
     """Write `table1.md`, `table1.json` and `table1.png`."""
-    text, numbers, picture = targets(folder)
+    text, numbers, picture = table1_targets(folder)
     figure = figure7(found)
     with whole_file(picture) as temporary:
         figure.savefig(temporary, format="png")
