@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from sunpeak.bsdf_report import BsdfReport
     from sunpeak.bsdf_verdict import Verdict
     from sunpeak.comfort import glare
+    from sunpeak.expressions import evaluate
     from sunpeak.fabrics import Fabric
     from sunpeak.glare_report import GlareReport, GlareSource, ZoneLuminances
     from sunpeak.glare_rules import GlareRules, RulesName, Task
@@ -51,6 +52,7 @@ __all__ = [
     "__version__",
     "check_scene",
     "direction",
+    "evaluate",
     "glare",
     "plot_bsdf",
     "render",
@@ -64,6 +66,7 @@ _HOMES = {
     "BsdfReport": "bsdf_report",
     "Verdict": "bsdf_verdict",
     "glare": "comfort",
+    "evaluate": "expressions",
     "Fabric": "fabrics",
     "GlareReport": "glare_report",
     "GlareSource": "glare_report",

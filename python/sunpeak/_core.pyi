@@ -196,3 +196,6 @@ def trace(
     error_of_each: bool,
     progress: Callable[[int, int], None] | None,
 ) -> _Floats: ...
+def evaluate(
+    definitions: str, expressions: list[str], channels: npt.NDArray[np.float64], arguments: list[float]
+) -> npt.NDArray[np.float64]: ...

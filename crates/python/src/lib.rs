@@ -4,6 +4,7 @@ mod arrays;
 mod bsdf;
 mod bsdf_report;
 mod error;
+mod expressions;
 mod fabric;
 mod glare;
 mod goal;
@@ -28,6 +29,8 @@ mod _core {
     };
     #[pymodule_export]
     use super::error::InputError;
+    #[pymodule_export]
+    use super::expressions::evaluate;
     #[pymodule_export]
     use super::fabric::fabric_xml;
     #[pymodule_export]
