@@ -69,7 +69,8 @@ FUNCTIONS = [
 
 
 @pytest.mark.parametrize(
-    "command", FUNCTIONS + [f"genprism m p {prism}" for prism in PRISMS] + [f"genblinds m b {blind}" for blind in BLINDS]
+    "command",
+    FUNCTIONS + [f"genprism m p {prism}" for prism in PRISMS] + [f"genblinds m b {blind}" for blind in BLINDS],
 )
 def test_surfaces_are_those_of_radiance(
     command: str, radiance: Radiance, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
