@@ -55,7 +55,6 @@ impl PyWorld {
 /// Distances, points, normals, surfaces.
 type FirstSurfaces<'py> = (Numbers<'py>, Rows<'py>, Rows<'py>, Bound<'py, PyArray1<i64>>);
 
-#[expect(clippy::too_many_arguments, reason = "keywords of the Python face")]
 fn options(
     samples: Option<u32>,
     time_s: Option<f64>,

@@ -9,7 +9,7 @@
 
 use crate::World;
 use crate::light::is_in_cone;
-use crate::material::{Arrival, Material};
+use crate::material::{Arrival, Inside, Material};
 use crate::shapes::Ray;
 use crate::world::{Facing, Seen};
 use sunpeak_core::{Frame, Rgb, Sampler, Vec3, luminance, warp};
@@ -139,7 +139,7 @@ fn mirrors(world: &World, id: crate::material::MaterialId) -> bool {
         Material::Mirror(m) => m.alternate.flatten().is_none_or(|a| mirrors(world, a)),
         Material::Emitter(e) => matches!(e.kind, Illum { alternate: Some(a) } if mirrors(world, a)),
         Material::Ward(m) => m.is_polished(),
-        Material::Table(_) => false,
+        _ => false,
     }
 }
 
@@ -182,21 +182,21 @@ impl Chains<'_> {
     fn radiance(&self, direction: Vec3) -> Rgb {
         let Some([x, y]) = self.camera.project(direction) else { return Rgb::ZERO };
         let Some(ray) = self.camera.ray(x, y) else { return Rgb::ZERO };
-        let chain = Chain {
-            ray: Ray::new(ray.origin, direction),
-            reach: ray.max_distance,
-            share: Rgb::ONE,
-            surfaces: 0,
-        };
-        self.followed(chain)
+        let (reach, ray) = (ray.max_distance, Ray::new(ray.origin, direction));
+        let inside = self.world.inside_at(&ray);
+        self.followed(Chain { ray, reach, share: Rgb::ONE, surfaces: 0, inside })
     }
 
     /// Radiance of the sun at the ends of all chains that go on from here.
     fn followed(&self, chain: Chain) -> Rgb {
         let mut open = vec![chain];
         let mut sum = Rgb::ZERO;
-        while let Some(chain) = open.pop() {
-            let Some(hit) = self.world.accel.closest(&chain.ray, chain.reach) else {
+        while let Some(mut chain) = open.pop() {
+            let hit = self.world.accel.closest(&chain.ray, chain.reach);
+            if let Some(air) = self.world.air(&chain.inside) {
+                chain.share *= air.transmittance(hit.map_or(chain.reach, |hit| hit.t));
+            }
+            let Some(hit) = hit else {
                 let is_sun = chain.reach.is_infinite()
                     && self.world.distant.seen(chain.ray.direction) == Some(self.disc.source);
                 if is_sun {
@@ -206,8 +206,8 @@ impl Chains<'_> {
                 continue;
             };
             let object = self.world.object(&hit);
-            let arrival = self.world.arrival(&hit, &chain.ray);
-            match self.world.seen(object, &arrival, true) {
+            let (seen, arrival) = self.world.meet(&hit, &chain.ray, true, &mut chain.inside);
+            match seen {
                 Seen::Void => open.extend(chain.straight(&arrival, hit.t, Rgb::ONE)),
                 Seen::Emitter(_) => {}
                 Seen::Surface(material) => {
@@ -230,6 +230,7 @@ struct Chain {
     reach: f64,
     share: Rgb,
     surfaces: u32,
+    inside: Inside,
 }
 
 impl Chain {
@@ -244,7 +245,7 @@ impl Chain {
     }
 
     fn onwards(&self, ray: Ray, reach: f64, share: Rgb) -> Option<Self> {
-        let next = Self { ray, reach, share: self.share * share, surfaces: self.surfaces + 1 };
+        let next = Self { ray, reach, share: self.share * share, surfaces: self.surfaces + 1, ..*self };
         (luminance(next.share) > SMALLEST_SHARE && next.surfaces < MAX_SURFACES).then_some(next)
     }
 }

@@ -9,7 +9,7 @@ mod path;
 
 use crate::exact_sun::ExactSuns;
 use crate::guide::Guide;
-use crate::material::{Arrival, Material, Scattering, Smooth, SmoothSample};
+use crate::material::{Air, Arrival, Flight, Material, Scattering, Smooth, SmoothSample};
 use crate::shapes::Ray;
 use crate::world::{Facing, Object, Seen};
 use crate::{RenderOptions, World};
@@ -51,13 +51,15 @@ pub(crate) struct Integrator<'w> {
 impl Integrator<'_> {
     /// Radiance that arrives along the ray from surfaces before `reach` (and from infinity if that is infinite).
     pub fn radiance(&self, ray: Ray, reach: f64, sampler: &mut Sampler) -> Rgb {
-        self.trace(Path::from_camera(ray, reach), sampler)
+        let inside = self.world.inside_at(&ray);
+        self.trace(Path::from_camera(ray, reach, inside), sampler)
     }
 
     /// Irradiance [W/m²] on the front of a surface element.
     pub fn irradiance(&self, point: Vec3, normal: Vec3, sampler: &mut Sampler) -> Rgb {
         let sensor = Met::sensor(point, normal);
-        let mut path = Path::from_camera(Ray::new(point, -normal), f64::INFINITY);
+        let ray = Ray::new(point, -normal);
+        let mut path = Path::from_camera(ray, f64::INFINITY, self.world.inside_at(&ray));
         let direct = self.direct(&path, &sensor, sampler);
         if !self.scatter(&mut path, &sensor, sampler) {
             return direct + path.ambient;
@@ -68,13 +70,31 @@ impl Integrator<'_> {
     fn trace(&self, mut path: Path, sampler: &mut Sampler) -> Rgb {
         let mut sum = Rgb::ZERO;
         while path.events <= self.limits.max_depth {
-            let Some(hit) = self.world.accel.closest(&path.ray, path.reach) else {
+            let hit = self.world.accel.closest(&path.ray, path.reach);
+            if let Some(air) = self.world.air(&path.inside) {
+                let length = hit.map_or(path.reach, |hit| hit.t);
+                match air.fly(path.throughput, length, sampler.next_1d(), sampler.next_1d()) {
+                    Flight::Through(share) => path.throughput *= share,
+                    Flight::Scattered(distance, share) => {
+                        path.throughput *= share;
+                        let met = Met::air(&air, path.ray.at(distance), path.ray.direction);
+                        path.travel(distance);
+                        sum += path.throughput * self.direct(&path, &met, sampler);
+                        if !self.scatter(&mut path, &met, sampler) || !survives(&mut path, sampler) {
+                            return sum;
+                        }
+                        continue;
+                    }
+                }
+            }
+            let Some(hit) = hit else {
                 return sum + path.throughput * self.light_from_infinity(&path);
             };
             let object = self.world.object(&hit);
-            let arrival = self.world.arrival(&hit, &path.ray);
+            let view = path.is_view();
+            let (seen, arrival) = self.world.meet(&hit, &path.ray, view, &mut path.inside);
             path.travel(hit.t);
-            match self.world.seen(object, &arrival, path.is_view()) {
+            match seen {
                 Seen::Void => path.go_straight(arrival.point, Rgb::ONE),
                 Seen::Emitter(emitter) => {
                     return sum + path.throughput * self.light_from_lamp(&path, object, &arrival, emitter);
@@ -103,7 +123,7 @@ impl Integrator<'_> {
         }
         let choice = sampler.next_1d() * whole;
         if choice < straight {
-            path.go_straight(met.arrival.point, met.scattering.straight * (whole / straight));
+            path.go_straight(met.straight_origin(), met.scattering.straight * (whole / straight));
             path.is_past_peak |= matches!(met.material, Some(Material::Table(_)));
         } else if choice < straight + mirrored {
             path.mirror(&met.arrival, met.scattering.mirrored * (whole / mirrored), met.is_flat);
@@ -140,7 +160,7 @@ impl Integrator<'_> {
             };
             path.bounces += u32::from(is_diffuse);
         }
-        let point = met.arrival.point;
+        let point = met.arrival.point + met.scattering.smooth.offset(sample.direction);
         let departure = Departure { point, pdf: sample.pdf * share, source_factor: sample.source_factor };
         path.depart(departure, sample.direction, weight / share);
         true
@@ -188,9 +208,33 @@ impl<'w> Met<'w> {
         Self { arrival, material: Some(material), is_flat, scattering, shares }
     }
 
+    /// A point of the air at which a ray of this direction is scattered.
+    fn air(air: &Air, point: Vec3, direction: Vec3) -> Self {
+        let scattering = Scattering { smooth: Smooth::Phase(air.phase(direction)), ..Scattering::BLACK };
+        let arrival = Arrival::new(point, -direction, direction);
+        Self { arrival, material: None, is_flat: true, scattering, shares: [0.0, 0.0, 0.0, 1.0] }
+    }
+
+    /// Where light that is scattered starts: at the surface, and beyond what a table with thickness stands for.
+    fn origins(&self) -> impl Iterator<Item = Vec3> {
+        let far = match self.material {
+            Some(Material::Table(table)) if table.is_proxy() => Some(self.straight_origin()),
+            _ => None,
+        };
+        std::iter::once(self.arrival.point).chain(far)
+    }
+
+    /// Where a ray that goes straight on starts: beyond the geometry that a table with thickness stands for.
+    fn straight_origin(&self) -> Vec3 {
+        match self.material {
+            Some(Material::Table(table)) => self.arrival.point + table.offset(self.arrival.normal),
+            _ => self.arrival.point,
+        }
+    }
+
     /// A surface element that takes up all light at its front.
     fn sensor(point: Vec3, normal: Vec3) -> Self {
-        let arrival = Arrival { point, normal, direction: -normal };
+        let arrival = Arrival::new(point, normal, -normal);
         let scattering =
             Scattering { smooth: Smooth::Sensor(Frame::from_normal(normal)), ..Scattering::BLACK };
         Self { arrival, material: None, is_flat: true, scattering, shares: [0.0, 0.0, 0.0, 1.0] }

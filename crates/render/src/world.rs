@@ -6,8 +6,8 @@ use crate::WorldOptions;
 use crate::accel::{Accel, Hit};
 use crate::guide::Guide;
 use crate::light::{DistantSources, Lamps};
-use crate::material::{Alternate, Arrival, Emitter, EmitterKind, Material, MaterialId};
-use crate::shapes::Ray;
+use crate::material::{Air, Alternate, Arrival, Emitter, EmitterKind, Inside, Material, MaterialId};
+use crate::shapes::{COINCIDENT, Ray, SmoothMesh};
 use std::sync::atomic::{AtomicU64, Ordering};
 use sunpeak_bsdf::PeakRule;
 use sunpeak_core::{Result, Rgb, Vec3};
@@ -29,6 +29,10 @@ pub struct World {
     pub(crate) rays: AtomicU64,
     /// Where diffuse surfaces look for light, if there are shades.
     pub(crate) guide: Option<Guide>,
+    /// Meshes with normals at their vertices.
+    pub(crate) meshes: Vec<SmoothMesh>,
+    /// Is there mist or antimatter?
+    pub(crate) has_volumes: bool,
 }
 
 /// A surface of the scene.
@@ -47,6 +51,8 @@ pub(crate) enum Facing {
     Flat(Vec3),
     /// From an analytic shape.
     Curved(u32),
+    /// Interpolated between a triangle's corners.
+    Smooth { mesh: u32, triangle: u32 },
 }
 
 /// What a path meets at a surface.
@@ -101,8 +107,90 @@ impl World {
         let normal = match self.object(hit).facing {
             Facing::Flat(normal) => normal,
             Facing::Curved(shape) => self.accel.shape(shape).normal(point),
+            Facing::Smooth { mesh, triangle } => {
+                let (flat, smooth) = self.meshes[mesh as usize].normals_at(triangle, point);
+                return Arrival::new(point, flat, ray.direction).smoothed(smooth);
+            }
         };
-        Arrival { point, normal, direction: ray.direction }
+        Arrival::new(point, normal, ray.direction)
+    }
+
+    /// What a path that is in these volumes meets; they change where it passes a boundary.
+    pub(crate) fn meet(&self, hit: &Hit, ray: &Ray, view: bool, inside: &mut Inside) -> (Seen<'_>, Arrival) {
+        let arrival = self.arrival(hit, ray);
+        let object = self.object(hit);
+        match self.meet_volume(object, &arrival, inside) {
+            Some(met) => met,
+            None => (self.seen(object, &arrival, view), arrival),
+        }
+    }
+
+    /// Boundaries of volumes and what they hide; `None` for all other surfaces.
+    pub(crate) fn meet_volume(
+        &self,
+        object: &Object,
+        arrival: &Arrival,
+        inside: &mut Inside,
+    ) -> Option<(Seen<'_>, Arrival)> {
+        if !self.has_volumes {
+            return None;
+        }
+        let (id, at_front) = (object.material, arrival.at_front());
+        match self.material(id) {
+            Material::Antimatter(antimatter) if !at_front && inside.is_in_clipped(id) => {
+                // The ray has come into a solid that does not exist here, and now it does: the cut face.
+                if antimatter.face.is_some() {
+                    return Some((self.alternate(antimatter.face), arrival.turned()));
+                }
+                inside.leave(id);
+            }
+            Material::Mist(_) | Material::Antimatter(_) if at_front => inside.enter(id),
+            Material::Mist(_) | Material::Antimatter(_) => inside.leave(id),
+            _ => {
+                let clips = |volume: &MaterialId| match self.material(*volume) {
+                    Material::Antimatter(antimatter) => antimatter.clipped.contains(&id),
+                    _ => false,
+                };
+                let clipping = inside.volumes().find(clips)?;
+                inside.cross_clipped(clipping, at_front);
+            }
+        }
+        Some((Seen::Void, *arrival))
+    }
+
+    /// The air in these volumes, if there is mist.
+    pub(crate) fn air(&self, inside: &Inside) -> Option<Air> {
+        if inside.is_empty() {
+            return None;
+        }
+        Air::of(inside.volumes().filter_map(|volume| match self.material(volume) {
+            Material::Mist(mist) => Some(mist),
+            _ => None,
+        }))
+    }
+
+    /// The mists that a point is in: closed surfaces that a ray from there leaves more often than it enters them.
+    pub(crate) fn inside_at(&self, ray: &Ray) -> Inside {
+        let mut inside = Inside::default();
+        if !self.has_volumes {
+            return inside;
+        }
+        let mut crossings: Vec<(Hit, bool)> = Vec::new();
+        self.accel.each_crossing(ray, f64::INFINITY, |hit| {
+            let is_mist = matches!(self.material(self.object(&hit).material), Material::Mist(_));
+            let is_seam = |(h, _): &(Hit, bool)| h.object == hit.object && (h.t - hit.t).abs() <= COINCIDENT;
+            if is_mist && !crossings.iter().any(is_seam) {
+                crossings.push((hit, self.arrival(&hit, ray).at_front()));
+            }
+            true
+        });
+        crossings.sort_by(|(a, _), (b, _)| a.t.total_cmp(&b.t));
+        // From far away back to the point.
+        for (hit, at_front) in crossings.into_iter().rev() {
+            let volume = self.object(&hit).material;
+            if at_front { inside.leave(volume) } else { inside.enter(volume) }
+        }
+        inside
     }
 
     /// What a path sees. `view`: it comes from the camera and met only mirrors and clear panes.
@@ -118,6 +206,7 @@ impl World {
                 }
                 _ => Seen::Surface(self.material(object.material)),
             },
+            Material::Table(table) if table.is_passed(arrival, view) => Seen::Void,
             material => Seen::Surface(material),
         }
     }

@@ -25,11 +25,6 @@ fn refusals_name_place_and_remedy() {
     let sky = "void brightfunc sky 2 skybr skybright.cal 0 7 1 10 3 .2 0 0 1\n";
     for (text, line, words) in [
         (
-            format!("\nvoid BSDF cloth 6 .1 {file} 0 0 1 . 0 0\ncloth ring r 0 0 8 0 0 1 0 0 1 0 1\n"),
-            2,
-            "thickness 0.1: proxy geometry is not supported",
-        ),
-        (
             format!("void aBSDF cloth 5 {file} 0 0 1 . 0 0\ncloth ring r 0 0 8 0 0 1 0 0 1 0 1\n"),
             2,
             "up vector [0, 0, 1] runs along",

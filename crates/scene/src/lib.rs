@@ -1,7 +1,8 @@
 //! The Radiance scene language, views and pictures. It knows files; it does not know how light moves.
 //!
 //! A scene file goes through three layers: [`raw`] reads words and counts, `command` does the `!commands` (in this
-//! process, never in a shell unless that is allowed), `interpret` looks names up and checks arguments.
+//! process, never in a shell unless that is allowed), `interpret` looks names up and checks arguments. Octrees and meshes that
+//! a scene names are read by `compiled`, and become surfaces of the scene.
 //!
 //! ```
 //! use sunpeak_scene::{LoadOptions, Scene};
@@ -13,6 +14,7 @@
 
 mod check;
 mod command;
+mod compiled;
 mod disc_coverage;
 mod files;
 mod interpret;
@@ -28,6 +30,7 @@ pub use files::LoadOptions;
 pub use load::{Source, load_primitives};
 pub use picture::{BlockErrors, ExactSource, Picture};
 pub use scene::{
-    BsdfMaterial, Material, Modifier, ModifierId, ModifierKind, Pattern, Scene, Shape, Surface, Ward,
+    Anisotropy, BsdfMaterial, Material, Medium, Mesh, Modifier, ModifierId, ModifierKind, Pattern, Scene,
+    Shape, Surface, Ward,
 };
 pub use view::{Camera, PixelRay, View, ViewKind, ViewRay};

@@ -1,6 +1,6 @@
 //! What scene files say: surfaces and modifiers, in file order, with positions for error messages.
 
-use std::path::PathBuf;
+use std::{path::PathBuf, sync::Arc};
 use sunpeak_core::{Location, Rgb, Vec3};
 use sunpeak_sky::SkyDistribution;
 
@@ -80,6 +80,42 @@ pub enum Material {
         /// Hartmann's constant, dispersion.
         hartmann: f64,
     },
+    /// The boundary between two dielectrics.
+    Interface {
+        /// Behind the surface.
+        inside: Medium,
+        /// Before it.
+        outside: Medium,
+    },
+    /// Ashikhmin and Shirley's anisotropic highlights over a diffuse surface.
+    Ashikhmin {
+        /// Diffuse reflectance.
+        diffuse: Rgb,
+        /// Specular reflectance at normal incidence.
+        specular: Rgb,
+        /// Exponents along and across the orientation: larger is smoother.
+        powers: [f64; 2],
+        /// Along what the first exponent lies, world axes, not normalised; to be projected on the surface.
+        orientation: Vec3,
+    },
+    /// A volume of air that scatters; its surface is invisible.
+    Mist {
+        /// Names of light sources that Radiance looks for in it.
+        sources: Vec<String>,
+        /// Extinction: what is lost of a ray in one metre [1/m].
+        extinction: Rgb,
+        /// Share of that which is scattered.
+        albedo: Rgb,
+        /// Mean cosine of the scattering angle (Henyey and Greenstein's g).
+        eccentricity: f64,
+    },
+    /// A volume in which surfaces of some modifiers do not exist.
+    Antimatter {
+        /// The modifiers.
+        clipped: Vec<ModifierId>,
+        /// What the cut face looks like; `None` leaves it open.
+        face: Option<ModifierId>,
+    },
     /// A planar mirror that makes virtual sources; `alternate` is shown to rays that are not shadow rays.
     Mirror {
         /// Reflectance.
@@ -117,14 +153,34 @@ pub enum Material {
     Bsdf(BsdfMaterial),
 }
 
-/// Arguments shared by plastic, metal and trans: the isotropic Ward model.
+/// A transparent medium.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Medium {
+    /// Transmission per unit of length (one metre).
+    pub transmission: Rgb,
+    /// Index of refraction.
+    pub index: f64,
+}
+
+/// Arguments shared by plastic, metal and trans, and by plastic2, metal2 and trans2: Ward's model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ward {
     /// Diffuse colour (colour of everything for metal).
     pub color: Rgb,
     /// Fraction reflected specularly.
     pub specularity: f64,
-    /// RMS slope of the facets.
+    /// RMS slope of the facets; along the orientation, if there is one.
+    pub roughness: f64,
+    /// Set for plastic2, metal2 and trans2.
+    pub anisotropy: Option<Anisotropy>,
+}
+
+/// A second roughness.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Anisotropy {
+    /// Along what the first roughness lies, world axes, not normalised; to be projected on the surface.
+    pub orientation: Vec3,
+    /// RMS slope across the orientation.
     pub roughness: f64,
 }
 
@@ -200,6 +256,8 @@ pub enum Shape {
         /// Outer radius [m].
         outer_radius: f64,
     },
+    /// Triangles that share vertices.
+    Mesh(Mesh),
     /// A cone of directions at infinity.
     Source {
         /// Unit vector towards it.
@@ -207,4 +265,18 @@ pub enum Shape {
         /// Full angle [deg].
         angle_deg: f64,
     },
+}
+
+/// A mesh in world axes; what one file holds is shared by the surfaces that its materials make.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    /// Places of the vertices.
+    pub vertices: Arc<[Vec3]>,
+    /// Unit normal at each vertex, zero where there is none; empty if there are none at all. Between them the normal is
+    /// interpolated in triangles whose corners all have one.
+    pub normals: Arc<[Vec3]>,
+    /// Local coordinates (Radiance's `Lu`, `Lv`) at each vertex; empty if there are none.
+    pub local: Arc<[[f64; 2]]>,
+    /// Indices of vertices, counter-clockwise at the front.
+    pub triangles: Vec<[u32; 3]>,
 }

@@ -3,7 +3,7 @@
 use super::{Integrator, Met, path::Path};
 use crate::guide::Guide;
 use crate::light::{LightSample, power_heuristic};
-use crate::material::{Arrival, Emitter, Smooth, reflect};
+use crate::material::{Arrival, Emitter, Inside, Smooth, reflect};
 use crate::shapes::Ray;
 use crate::transmit::Target;
 use crate::world::{Facing, Object};
@@ -21,6 +21,7 @@ impl Integrator<'_> {
             share: met.smooth_share(),
             is_last: self.is_last(path),
             guide: self.guide(&met.scattering.smooth),
+            inside: path.inside,
         };
         let mut sum = Rgb::ZERO;
         for &sun in self.world.distant.suns() {
@@ -34,11 +35,15 @@ impl Integrator<'_> {
         {
             sum += self.received(&receiver, &sample, &Target::of(&sample));
         }
-        if !self.world.lamps.is_empty()
-            && let Some(sample) =
-                self.world.lamps.sample(met.arrival.point, sampler.next_1d(), sampler.next_2d())
-        {
-            sum += self.received(&receiver, &sample, &Target::of(&sample));
+        if self.world.lamps.is_empty() {
+            return sum;
+        }
+        // Both sides of what has thickness look for lamps, each from where its own light starts.
+        for origin in met.origins() {
+            let sample = self.world.lamps.sample(origin, sampler.next_1d(), sampler.next_2d());
+            if let Some(sample) = sample.filter(|s| receiver.origin(s.direction) == origin) {
+                sum += self.received(&receiver, &sample, &Target::of(&sample));
+            }
         }
         sum
     }
@@ -53,8 +58,8 @@ impl Integrator<'_> {
         if value.total() == Rgb::ZERO || sample.radiance == Rgb::ZERO {
             return Rgb::ZERO;
         }
-        let ray = Ray::new(receiver.arrival.point, sample.direction);
-        let transmitted = self.world.transmitted(&ray, target);
+        let ray = Ray::new(receiver.origin(sample.direction), sample.direction);
+        let transmitted = self.world.transmitted(&ray, target, receiver.inside);
         if transmitted.is_blocked() {
             return Rgb::ZERO;
         }
@@ -91,18 +96,19 @@ impl Integrator<'_> {
         if sample.direction.dot(normal) <= 0.0 {
             return Rgb::ZERO;
         }
-        let ray = Ray::new(receiver.arrival.point, reflect(sample.direction, normal));
+        let direction = reflect(sample.direction, normal);
+        let ray = Ray::new(receiver.origin(direction), direction);
         let Some(hit) = world.accel.crossing_of(&ray, mirror) else { return Rgb::ZERO };
         let value = receiver.smooth_value(&LightSample { direction: ray.direction, ..sample });
         if value.total() == Rgb::ZERO {
             return Rgb::ZERO;
         }
-        let to_mirror = world.transmitted(&ray, &Target::point(hit, mirror));
+        let to_mirror = world.transmitted(&ray, &Target::point(hit, mirror), receiver.inside);
         if to_mirror.is_blocked() {
             return Rgb::ZERO;
         }
         let onwards = Ray::new(ray.at(hit), sample.direction);
-        let to_sun = world.transmitted(&onwards, &Target::sun(sun, &sample));
+        let to_sun = world.transmitted(&onwards, &Target::sun(sun, &sample), world.inside_at(&onwards));
         let reflectance = world.mirror_reflectance(mirror);
         let factor = receiver.cosine(ray.direction) / sample.pdf;
         value.total() * sample.radiance * to_mirror.share * reflectance * to_sun.share * factor
@@ -185,6 +191,8 @@ struct Receiver<'a, 'w> {
     /// May no diffuse bounce follow?
     is_last: bool,
     guide: Option<&'a Guide>,
+    /// Mist and antimatter around.
+    inside: Inside,
 }
 
 impl Receiver<'_, '_> {
@@ -206,6 +214,11 @@ impl Receiver<'_, '_> {
     }
 
     fn cosine(&self, direction: Vec3) -> f64 {
-        direction.dot(self.arrival.normal).abs()
+        self.smooth.cosine(direction, self.arrival.normal)
+    }
+
+    /// Where light from this direction arrives.
+    fn origin(&self, direction: Vec3) -> Vec3 {
+        self.arrival.point + self.smooth.offset(direction)
     }
 }

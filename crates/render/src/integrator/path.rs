@@ -1,6 +1,6 @@
 //! The state of a path while it is traced.
 
-use crate::material::{Arrival, Material};
+use crate::material::{Arrival, Inside, Material};
 use crate::shapes::Ray;
 use sunpeak_core::{Rgb, Vec3};
 
@@ -37,12 +37,14 @@ pub(super) struct Path {
     pub first_direction: Vec3,
     /// What the light past the last diffuse bounce adds at the end.
     pub ambient: Rgb,
-    /// Extinction of the medium [1/m].
+    /// Extinction of the solid that the path is in [1/m].
     extinction: Rgb,
+    /// Mist and antimatter that the path is in.
+    pub inside: Inside,
 }
 
 impl Path {
-    pub fn from_camera(ray: Ray, reach: f64) -> Self {
+    pub fn from_camera(ray: Ray, reach: f64, inside: Inside) -> Self {
         Self {
             ray,
             reach,
@@ -56,6 +58,7 @@ impl Path {
             first_direction: ray.direction,
             ambient: Rgb::ZERO,
             extinction: Rgb::ZERO,
+            inside,
         }
     }
 
@@ -73,13 +76,13 @@ impl Path {
         }
     }
 
-    /// Weaken the way to the inside face of a solid that the path did not enter by a face: it started inside.
+    /// Weaken the way to the face of a solid that the path did not enter by a face: it started inside.
     pub fn absorb(&mut self, material: &Material, arrival: &Arrival, distance: f64) {
         if let Material::Dielectric(solid) = material
-            && !arrival.at_front()
+            && let Some(extinction) = solid.extinction_before(arrival)
             && self.extinction == Rgb::ZERO
         {
-            self.throughput *= (-solid.extinction() * distance).exp();
+            self.throughput *= (-extinction * distance).exp();
         }
     }
 
@@ -103,7 +106,7 @@ impl Path {
         self.is_bent = true;
         self.is_distorted = true;
         self.extinction = match material {
-            Some(Material::Dielectric(solid)) if arrival.at_front() => solid.extinction(),
+            Some(Material::Dielectric(solid)) => solid.extinction_behind(arrival),
             _ => Rgb::ZERO,
         };
     }

@@ -1,6 +1,6 @@
 //! The smooth part of a material at one point: what shadow rays are weighted with and directions are sampled from.
 
-use super::{table::TableLobes, ward::WardLobes};
+use super::{ashikhmin::AshikhminLobes, table::TableLobes, volume::Phase, ward::WardLobes};
 use std::f64::consts::FRAC_1_PI;
 use sunpeak_core::{Frame, Rgb, Sampler, Vec3, warp};
 
@@ -45,8 +45,12 @@ pub(crate) enum Smooth<'w> {
     Sensor(Frame),
     /// Diffuse and Gaussian lobes.
     Ward(WardLobes),
+    /// Ashikhmin's and Shirley's lobes.
+    Ashikhmin(AshikhminLobes),
     /// A table and diffuse lobes.
     Table(TableLobes<'w>),
+    /// Air that scatters; there is no surface, and no cosine.
+    Phase(Phase),
 }
 
 impl Smooth<'_> {
@@ -56,7 +60,9 @@ impl Smooth<'_> {
             Self::None => 0.0,
             Self::Sensor(_) => 1.0,
             Self::Ward(lobes) => lobes.albedo(),
+            Self::Ashikhmin(lobes) => lobes.albedo(),
             Self::Table(lobes) => lobes.albedo(),
+            Self::Phase(_) => 1.0,
         }
     }
 
@@ -69,7 +75,25 @@ impl Smooth<'_> {
                 SmoothValue { diffuse: front, glossy: Rgb::ZERO }
             }
             Self::Ward(lobes) => lobes.evaluate(direction),
+            Self::Ashikhmin(lobes) => lobes.evaluate(direction),
             Self::Table(lobes) => lobes.evaluate(direction),
+            Self::Phase(phase) => SmoothValue { diffuse: phase.evaluate(direction), glossy: Rgb::ZERO },
+        }
+    }
+
+    /// Cosine to a surface's normal, by which light counts.
+    pub fn cosine(&self, direction: Vec3, normal: Vec3) -> f64 {
+        match self {
+            Self::Phase(_) => 1.0,
+            _ => direction.dot(normal).abs(),
+        }
+    }
+
+    /// How far from the surface light in this direction starts: the other side of what a table with thickness stands for.
+    pub fn offset(&self, direction: Vec3) -> Vec3 {
+        match self {
+            Self::Table(lobes) => lobes.offset(direction),
+            _ => Vec3::ZERO,
         }
     }
 
@@ -93,7 +117,7 @@ impl Smooth<'_> {
 
     /// Are directions best drawn with a guide's help? Not where a table knows better.
     pub fn can_be_guided(&self) -> bool {
-        matches!(self, Self::Sensor(_) | Self::Ward(_))
+        matches!(self, Self::Sensor(_) | Self::Ward(_) | Self::Ashikhmin(_))
     }
 
     /// May sampled directions find light sources? Not where `toward_source` is a rule of its own.
@@ -110,7 +134,9 @@ impl Smooth<'_> {
             Self::None => 0.0,
             Self::Sensor(frame) => direction.dot(frame.z).max(0.0) * FRAC_1_PI,
             Self::Ward(lobes) => lobes.pdf(direction),
+            Self::Ashikhmin(lobes) => lobes.pdf(direction),
             Self::Table(lobes) => lobes.pdf(direction),
+            Self::Phase(phase) => phase.pdf(direction),
         }
     }
 
@@ -126,7 +152,9 @@ impl Smooth<'_> {
                 (pdf > 0.0).then_some(SmoothSample { direction, weight, pdf, source_factor: 1.0 })
             }
             Self::Ward(lobes) => lobes.sample(sampler.next_1d(), sampler.next_2d()),
+            Self::Ashikhmin(lobes) => lobes.sample(sampler.next_1d(), sampler.next_2d()),
             Self::Table(lobes) => lobes.sample(sampler.next_1d(), sampler.next_2d(), sampler.next_1d()),
+            Self::Phase(phase) => Some(phase.sample(sampler.next_1d(), sampler.next_2d())),
         }
     }
 }

@@ -4,6 +4,12 @@
 //! The rules of Radiance and of the paper are not a decomposition: the delta is for shadow rays to light sources and for
 //! view rays only; towards light sources the table is muted around the straight direction; samples of view rays there are
 //! dropped; everybody else sees the whole table. Here they do what the reference does, its double counting included.
+//!
+//! A `BSDF` with thickness stands for geometry that is there too (manual, "BSDF"): view and shadow rays pass and meet that
+//! geometry, and so do rays from its side; a scattered ray that comes from outside meets the table, and what it sends through
+//! starts beyond the geometry. What the table lets through straight is what shadow rays find between the parts of the geometry:
+//! with the split it goes straight, and emitters behind it are left to shadow rays; so nothing counts twice. (With the other
+//! rules such a table is whole, and the straight light of an emitter does count twice, as in Radiance.)
 
 use super::{Arrival, Scattering, Smooth, SmoothValue, smooth::SmoothSample};
 use std::{f64::consts::FRAC_1_PI, sync::Arc};
@@ -16,6 +22,8 @@ pub(crate) struct Table {
     pub bsdf: Arc<Bsdf>,
     /// Is it an `aBSDF`?
     pub is_aperture: bool,
+    /// What it stands for reaches this far behind its front, or, negative, before it [m].
+    pub thickness: f64,
     pub rule: PeakRule,
     /// Up vector, world axes.
     pub up: Vec3,
@@ -32,6 +40,21 @@ impl Table {
     fn frame(&self, normal: Vec3) -> Frame {
         let frame = Frame::from_normal_up(normal, self.up).unwrap_or_else(|| Frame::from_normal(normal));
         if self.mirrored { Frame { x: -frame.x, ..frame } } else { frame }
+    }
+
+    /// Does it stand for geometry that is there too?
+    pub fn is_proxy(&self) -> bool {
+        self.thickness != 0.0
+    }
+
+    /// Is it invisible to a ray that is no shadow ray? `view`: the ray comes from the camera and met only mirrors and clear panes.
+    pub fn is_passed(&self, arrival: &Arrival, view: bool) -> bool {
+        self.is_proxy() && (view || (self.thickness > 0.0) != arrival.at_front())
+    }
+
+    /// How far from the surface transmitted light starts.
+    pub fn offset(&self, normal: Vec3) -> Vec3 {
+        normal * -self.thickness
     }
 
     pub fn is_reference_rule(&self) -> bool {
@@ -133,6 +156,11 @@ impl TableLobes<'_> {
 
     pub fn albedo(&self) -> f64 {
         self.weights().iter().sum()
+    }
+
+    pub fn offset(&self, direction: Vec3) -> Vec3 {
+        let is_transmission = direction.dot(self.frame.z) * self.w_in.z < 0.0;
+        if is_transmission { self.table.offset(self.frame.z) } else { Vec3::ZERO }
     }
 
     pub fn has_source_rule(&self) -> bool {

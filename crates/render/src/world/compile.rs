@@ -6,19 +6,23 @@ use crate::accel::{Accel, Geometry, Primitive};
 use crate::guide::Guide;
 use crate::light::{Distant, DistantSources, Lamp, LampShape, Lamps};
 use crate::material::{
-    Alternate, Dielectric, Emitter, EmitterKind, Glass, Material, MaterialId, Mirror, Table, WardMaterial,
+    Alternate, Antimatter, Ashikhmin, Dielectric, Emitter, EmitterKind, Glass, Material, MaterialId, Mirror,
+    Mist, Table, WardMaterial,
 };
-use crate::shapes::{Analytic, Cone, Polygon, Ring, Sphere, Triangle};
+use crate::shapes::{Analytic, Cone, Polygon, Ring, SmoothMesh, Sphere, Triangle};
 use std::{collections::HashMap, path::Path, sync::Arc};
 use sunpeak_bsdf::{Bsdf, PeakRule};
 use sunpeak_core::{Error, Frame, Location, Result, Vec3};
 use sunpeak_scene::{
-    BsdfMaterial, Material as Said, ModifierId, ModifierKind, Pattern, Scene, Shape, Surface,
+    BsdfMaterial, Material as Said, Mesh, ModifierId, ModifierKind, Pattern, Scene, Shape, Surface,
 };
 use sunpeak_sky::SkyDistribution;
 
 /// Modifiers may name each other this deep; more is a circle.
 const MAX_MODIFIER_DEPTH: usize = 100;
+
+/// Triangles of a mesh that shadow rays look for one by one.
+const MAX_LAMPS_OF_MESH: usize = 64;
 
 /// Thickness up to this is none [m] (Radiance, `FTINY`).
 const NO_THICKNESS: f64 = 1e-6;
@@ -45,6 +49,7 @@ struct Compiler<'s> {
     lamps: Vec<Lamp>,
     mirrors: Vec<u32>,
     shades: Vec<Triangle>,
+    meshes: Vec<SmoothMesh>,
     /// Of each object: where its modifier stands in the scene. Of surfaces at the same place the later is seen.
     ranks: Vec<u32>,
     /// Of each object: which surface of the scene it is.
@@ -68,6 +73,7 @@ impl<'s> Compiler<'s> {
             lamps: Vec::new(),
             mirrors: Vec::new(),
             shades: Vec::new(),
+            meshes: Vec::new(),
             ranks: Vec::new(),
             surfaces: Vec::new(),
             current: 0,
@@ -76,6 +82,8 @@ impl<'s> Compiler<'s> {
 
     fn finish(self) -> Result<World> {
         let distant = DistantSources::new(self.sources);
+        let is_volume = |m: &Material| matches!(m, Material::Mist(_) | Material::Antimatter(_));
+        let has_volumes = self.materials.iter().any(is_volume);
         let suns = distant.suns().iter().map(|&sun| distant.get(sun).direction).collect();
         Ok(World {
             accel: Accel::build(self.primitives, self.analytic)?,
@@ -88,6 +96,8 @@ impl<'s> Compiler<'s> {
             rule: self.options.peak,
             rays: Default::default(),
             guide: Guide::new(self.shades, suns),
+            meshes: self.meshes,
+            has_volumes,
         })
     }
 
@@ -110,6 +120,7 @@ impl<'s> Compiler<'s> {
                 let ring = Ring { center, normal, inner_radius, outer_radius };
                 self.add_analytic(surface, material, Analytic::Ring(ring), LampShape::Ring(ring))?;
             }
+            Shape::Mesh(mesh) => self.add_mesh(surface, material, mesh)?,
         }
         Ok(())
     }
@@ -138,6 +149,41 @@ impl<'s> Compiler<'s> {
                 triangles.into_iter().for_each(|t| self.add_primitive(object, Geometry::Triangle(t)));
             }
             None => self.add_shape(object, Analytic::Polygon(polygon)),
+        }
+        Ok(())
+    }
+
+    /// Each triangle is an object of its own: it has its own normals.
+    fn add_mesh(&mut self, surface: &Surface, material: MaterialId, mesh: &Mesh) -> Result<()> {
+        if mesh.vertices.iter().any(|v| !v.is_finite()) {
+            return Err(Error::input(
+                surface.location.clone(),
+                "a vertex of the mesh is not a finite number",
+            ));
+        }
+        let index = self.meshes.len() as u32;
+        let is_smooth = |t: &&[u32; 3]| SmoothMesh::is_smooth(mesh, **t);
+        if mesh.triangles.iter().any(|t| is_smooth(&t)) {
+            self.meshes.push(SmoothMesh(mesh.clone()));
+        }
+        // Light from more triangles than this is left to paths.
+        let are_lamps = mesh.triangles.len() <= MAX_LAMPS_OF_MESH;
+        let is_shade = self.materials[material.0 as usize].is_shade();
+        for (i, corners) in mesh.triangles.iter().enumerate() {
+            let triangle = Triangle(corners.map(|i| mesh.vertices[i as usize]));
+            let Some(normal) = triangle.area_vector().try_normalize() else { continue };
+            let facing = match is_smooth(&corners) {
+                true => Facing::Smooth { mesh: index, triangle: i as u32 },
+                false => Facing::Flat(normal),
+            };
+            let object = self.add_object(surface, material, facing)?;
+            if are_lamps {
+                self.add_lamp(object, material, LampShape::triangles(vec![triangle], normal));
+            }
+            if is_shade {
+                self.shades.push(triangle);
+            }
+            self.add_primitive(object, Geometry::Triangle(triangle));
         }
         Ok(())
     }
@@ -281,6 +327,23 @@ impl<'s> Compiler<'s> {
             &Said::Dielectric { transmission, index, hartmann } => {
                 Material::Dielectric(Dielectric::new(transmission, checked_index(index, location)?, hartmann))
             }
+            Said::Interface { inside, outside } => {
+                Material::Dielectric(Dielectric::interface(inside, outside))
+            }
+            &Said::Ashikhmin { diffuse, specular, powers, orientation } => {
+                Material::Ashikhmin(Ashikhmin { diffuse, specular, powers, orientation })
+            }
+            &Said::Mist { extinction, albedo, eccentricity, .. } => {
+                Material::Mist(Mist { extinction, albedo, eccentricity })
+            }
+            Said::Antimatter { clipped, face } => {
+                let mut materials = Vec::new();
+                for &id in clipped {
+                    materials.extend(self.alternate(Some(id), location, depth)?);
+                }
+                let face = self.alternate(*face, location, depth)?;
+                Material::Antimatter(Antimatter { clipped: materials, face })
+            }
             Said::Mirror { reflectance, alternate } => {
                 let alternate = match alternate {
                     None => None,
@@ -288,7 +351,7 @@ impl<'s> Compiler<'s> {
                 };
                 Material::Mirror(Mirror { reflectance: *reflectance, alternate })
             }
-            Said::Bsdf(bsdf) => Material::Table(self.compile_table(bsdf, location)?),
+            Said::Bsdf(bsdf) => Material::Table(self.compile_table(bsdf)?),
             Said::Light(_) | Said::Illum { .. } | Said::Glow { .. } | Said::Spotlight { .. } => {
                 return Err(Error::input(location.clone(), "an emitter that is none"));
             }
@@ -330,18 +393,18 @@ impl<'s> Compiler<'s> {
         named.map_or(Ok(None), |id| self.material(id, location, depth + 1))
     }
 
-    fn compile_table(&mut self, said: &'s BsdfMaterial, location: &Location) -> Result<Table> {
-        if said.thickness.abs() > NO_THICKNESS {
-            let message = format!(
-                "BSDF with thickness {}: proxy geometry is not supported yet; use thickness 0 or aBSDF",
-                said.thickness
-            );
-            return Err(Error::input(location.clone(), message));
-        }
+    fn compile_table(&mut self, said: &'s BsdfMaterial) -> Result<Table> {
+        let thickness = if said.thickness.abs() > NO_THICKNESS { said.thickness } else { 0.0 };
+        let rule = match self.options.peak {
+            rule if said.extract_peak => rule,
+            PeakRule::Split if thickness != 0.0 => PeakRule::Split,
+            _ => PeakRule::Off,
+        };
         Ok(Table {
             bsdf: self.bsdf(&said.file)?,
             is_aperture: said.extract_peak,
-            rule: if said.extract_peak { self.options.peak } else { PeakRule::Off },
+            thickness,
+            rule,
             up: said.up,
             mirrored: said.mirrored,
             front_diffuse: said.front_diffuse,

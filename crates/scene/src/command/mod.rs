@@ -22,6 +22,7 @@ use std::path::{Path, PathBuf};
 use sunpeak_core::{Error, Result};
 
 pub use transform_args::trailing_transform;
+pub use xform::Invocation;
 
 /// Commands whose output holds commands, and so on: deeper than this they make themselves.
 const MAX_DEPTH: usize = 64;

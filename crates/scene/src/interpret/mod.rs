@@ -2,14 +2,18 @@
 
 mod args;
 mod bsdf;
+mod compounds;
 mod materials;
+mod orientation;
 mod patterns;
 mod surfaces;
+mod volumes;
 
 use crate::{
     LoadOptions, Modifier, ModifierId, ModifierKind, Scene, Surface,
     raw::{Class, Primitive},
 };
+use compounds::Compounds;
 use std::{
     collections::{HashMap, HashSet},
     path::PathBuf,
@@ -28,6 +32,7 @@ pub struct Interpreter<'o> {
     scene: Scene,
     names: HashMap<String, Named>,
     problems: Vec<Problem>,
+    compounds: Compounds,
     /// Those of the problems that were told as mistakes.
     told: HashSet<usize>,
 }
@@ -61,6 +66,7 @@ impl<'o> Interpreter<'o> {
             scene: Scene::default(),
             names: HashMap::new(),
             problems: Vec::new(),
+            compounds: Compounds::default(),
             told: HashSet::new(),
         }
     }
@@ -69,7 +75,7 @@ impl<'o> Interpreter<'o> {
     pub fn add(&mut self, primitive: Primitive) -> Result<()> {
         match primitive.kind.class {
             Class::Surface => self.surface(primitive),
-            Class::Volume => Err(Error::input(primitive.location.clone(), args::unsupported(&primitive))),
+            Class::Volume => self.compound(&primitive),
             Class::Alias => self.alias(&primitive),
             _ => self.modifier(&primitive),
         }
@@ -175,10 +181,11 @@ impl<'o> Interpreter<'o> {
     }
 
     fn surface(&mut self, primitive: Primitive) -> Result<()> {
-        let modifier = match self.parent(&primitive, &primitive.modifier)? {
-            Reference::Void => None,
-            Reference::Named(Named::Modifier(id)) => Some(id),
-            Reference::Named(Named::Problem(problem)) => return Err(self.raise(problem, &primitive)),
+        let modifier = match (self.compounds.modifier, self.parent(&primitive, &primitive.modifier)?) {
+            (Some(id), _) => Some(id),
+            (None, Reference::Void) => None,
+            (None, Reference::Named(Named::Modifier(id))) => Some(id),
+            (None, Reference::Named(Named::Problem(problem))) => return Err(self.raise(problem, &primitive)),
         };
         if let Some(id) = modifier {
             self.check_chain(id, &primitive)?;
