@@ -25,6 +25,7 @@ mod scene;
 mod view;
 
 pub use check::SceneCheck;
+pub use compiled::{OctreeFile, decode_octree};
 pub use disc_coverage::disc_coverage;
 pub use files::LoadOptions;
 pub use load::{Source, load_primitives};
