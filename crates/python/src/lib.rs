@@ -40,7 +40,7 @@ mod _core {
     #[pymodule_export]
     use super::render::{PyWorld, render, trace};
     #[pymodule_export]
-    use super::scene::{PyScene, PyView, expanded_scene};
+    use super::scene::{PyScene, PyView, expanded_scene, read_octree, write_octree};
     #[pymodule_export]
     use super::sky::PySky;
     #[pymodule_export]
