@@ -103,6 +103,10 @@ class Scene:
     @property
     def warnings(self) -> list[str]: ...
 
+def read_octree(data: bytes, name: str) -> tuple[list[str], Path, int | None, list[Path | tuple[str, bytes, Path]]]: ...
+def write_octree(
+    history: list[str], cwd: str | PathLike[str], surfaces: int | None, parts: Sequence[_Part]
+) -> bytes: ...
 def expanded_scene(
     parts: Sequence[_Part], cwd: str | PathLike[str], search_path: list[str], allow_commands: bool
 ) -> list[tuple[Path, str]]: ...
@@ -158,6 +162,12 @@ def fabric_xml(
     lobe_sigma: float,
     reflectance: float,
 ) -> str: ...
+def roller_blind_xml(
+    basis: str, tau_nn: float, tau_nh: float, rho_front: float, rho_back: float, cutoff_deg: float | None
+) -> str: ...
+def roller_blind_transmittance(
+    tau_nn: float, tau_nh: float, rho_front: float, rho_back: float, cutoff_deg: float | None, incidence_rad: float
+) -> tuple[float, float, float]: ...
 
 class World:
     @staticmethod

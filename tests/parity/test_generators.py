@@ -40,16 +40,44 @@ BLINDS = [
     ".05 1 1.2 1 12.5 -r .026",
     ".05 1 1.2 1 135 -r .0251",
 ]
+FUNCTIONS = [
+    "genrev m r t 1+t 3",
+    "genrev m r 0 t 2",
+    "genrev m r 0 1-t 2",
+    "genrev m r 1-t 1 2",
+    "genrev m r 1-t 1-t 1",
+    "genrev m r '3*t' 'if(t-.5,1,.5)' 4 -e 'a=1'",
+    "genrev m r 'sin(PI*t)' 'hermite(.1,.5,w,-1,t)' 7 -f defs.cal -e 'w=2*half'",
+    "genworm m w t 't*t' 0 '.1+t' 2",
+    "genworm m w '.1*t' 0 0 '.1+t' 2",
+    "genworm m w t t t .1 1",
+    "genworm m w 'cos(2*PI*t)' 'sin(2*PI*t)' 'bezier(0,1,half,2,t)' '.1-.05*t' 9 -f defs.cal",
+    "gensurf m s s t 0 1 1",
+    "gensurf m s s t 's*t' 2 2",
+    "gensurf m s s t 's*t' 2 3",
+    "gensurf m s s 's*t' t 2 1",
+    "gensurf m s 't*cos(s)' 't*sin(s)' 0 2 2",
+    "gensurf m s 's*1.5+.1*t' 't+s*.2' '.3*s+.2*t' 2 2",
+    "gensurf m s 's+t*t*s' 't+.3*s*t' 0 2 2",
+    "gensurf m s 'cos(6.28*s)' 'sin(6.28*s)' t 3 2",
+    "gensurf m s s t 's*t*1e-7' 1 1",
+    "gensurf m s s t 's*t*1e-5' 1 1",
+    "gensurf m s s t 'half*bump(s)*bump(t)' 4 5 -f defs.cal",
+    "gensurf m s s t 's*t' 2 2 -e 'valid(s,t):s-t+.1'",
+    "gensurf m s s t 's*t' 3 3 -e 'valid(s,t)=if(s+t-.5,if(s-t-.5,-1,1.7-s-t),-1)'",
+]
 
 
 @pytest.mark.parametrize(
-    "command", [f"genprism m p {prism}" for prism in PRISMS] + [f"genblinds m b {blind}" for blind in BLINDS]
+    "command",
+    FUNCTIONS + [f"genprism m p {prism}" for prism in PRISMS] + [f"genblinds m b {blind}" for blind in BLINDS],
 )
 def test_surfaces_are_those_of_radiance(
     command: str, radiance: Radiance, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("outline.txt").write_text("0 0\n1 0\n.5 2 -1 1\n")
+    Path("defs.cal").write_text("{ a hump } half : .5; bump(x) = sin(PI*x)^2;")
     Path("theirs.rad").write_bytes(radiance.run(*shlex.split(command), folder=tmp_path))
     ours, theirs = words(f"!{command}"), words("theirs.rad")
     assert len(ours) == len(theirs) > 0
@@ -76,6 +104,12 @@ def words(source: str) -> list[str]:
         ("genblinds m b .05 1 1.2 2 30 -r .01", "the radius 0.01 does not span"),
         ("genblinds m b .05 1 1.2 x 30", "expected the number of slats"),
         ("genblinds m", "expected genblinds material name"),
+        ("genrev m r t nosuch(t) 2", "nosuch"),
+        ("genrev m r t 1 2 -s", "smoothing (-s) is not done inside"),
+        ("genrev m r t '1 +' 2", "genrev: "),
+        ("genrev m r t 'f(t)' 2 -e 'f(x)=f(x)+1'", "genrev: "),
+        ("gensurf m s s t 0 100000 100000", "more than 4000000"),
+        ("genworm m w t t t .1", "expected genworm material name"),
         ("genblinds m b 1 1 1 4000000 0 +r .5", "more than 4000000 surfaces"),
     ],
 )

@@ -10,7 +10,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use sunpeak_core::Vec3;
 use sunpeak_scene::{
-    Camera, LoadOptions, Modifier, ModifierKind, Scene, Source, View, ViewRay, load_primitives,
+    Camera, LoadOptions, Modifier, ModifierKind, OctreeFile, Scene, Source, View, ViewRay, decode_octree,
+    load_primitives,
 };
 
 /// Surfaces and modifiers, in file order.
@@ -110,15 +111,37 @@ fn shines(kind: &ModifierKind) -> bool {
 }
 
 /// A file or `!command`, or a name, a text and a folder.
-#[derive(FromPyObject)]
+#[derive(FromPyObject, IntoPyObject)]
 pub enum Part {
-    Text(String, Vec<u8>, PathBuf),
+    Text(String, PyBytes, PathBuf),
+    #[pyo3(transparent)]
     File(PathBuf),
+}
+
+/// `bytes`.
+pub struct PyBytes(Vec<u8>);
+
+impl<'a, 'py> FromPyObject<'a, 'py> for PyBytes {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        Ok(Self(object.extract::<&[u8]>()?.to_vec()))
+    }
+}
+
+impl<'py> IntoPyObject<'py> for PyBytes {
+    type Target = pyo3::types::PyBytes;
+    type Output = Bound<'py, Self::Target>;
+    type Error = std::convert::Infallible;
+
+    fn into_pyobject(self, py: Python<'py>) -> Result<Self::Output, Self::Error> {
+        Ok(pyo3::types::PyBytes::new(py, &self.0))
+    }
 }
 
 fn source(part: Part) -> Source {
     match part {
-        Part::Text(name, text, directory) => Source::Text { name, text, directory },
+        Part::Text(name, text, directory) => Source::Text { name, text: text.0, directory },
         Part::File(path) => Source::File(path),
     }
 }
@@ -146,6 +169,34 @@ pub fn expanded_scene(
         }
     }
     Ok(texts)
+}
+
+/// An octree file: header lines, folder, number of surfaces if it is known, parts.
+type OctreeParts = (Vec<String>, PathBuf, Option<usize>, Vec<Part>);
+
+/// Read the bytes of an octree file, ours or Radiance's.
+#[pyfunction]
+pub fn read_octree(py: Python<'_>, data: Vec<u8>, name: PathBuf) -> PyResult<OctreeParts> {
+    let file = py.detach(|| decode_octree(data, &name)).or_raise()?;
+    let part = |source| match source {
+        Source::File(path) => Part::File(path),
+        Source::Text { name, text, directory } => Part::Text(name, PyBytes(text), directory),
+    };
+    Ok((file.history, file.cwd, file.surfaces, file.sources.into_iter().map(part).collect()))
+}
+
+/// The bytes of an octree file.
+#[pyfunction]
+pub fn write_octree<'py>(
+    py: Python<'py>,
+    history: Vec<String>,
+    cwd: PathBuf,
+    surfaces: Option<usize>,
+    parts: Vec<Part>,
+) -> PyResult<Bound<'py, pyo3::types::PyBytes>> {
+    let sources = parts.into_iter().map(source).collect();
+    let bytes = py.detach(|| OctreeFile { history, cwd, surfaces, sources }.encode()).or_raise()?;
+    Ok(pyo3::types::PyBytes::new(py, &bytes))
 }
 
 /// The search path given, then that of the environment (`RAYPATH`).

@@ -26,6 +26,7 @@ mod scene;
 mod view;
 
 pub use check::SceneCheck;
+pub use compiled::{OctreeFile, decode_octree};
 pub use disc_coverage::disc_coverage;
 pub use field::{DataArray, Field, RayState, Spectrum};
 pub use files::LoadOptions;

@@ -37,7 +37,7 @@ def run(arguments: list[str]) -> int:
     if warn:
         sys.stderr.writelines(f"oconv: warning - {warning}\n" for warning in scene.warnings)
     history.append(header.command_line("oconv", arguments))
-    made = octree.Octree(cwd, parts, len(scene.surface_names), history)
+    made = octree.Octree(cwd, parts, len(scene.surface_names), history=history)
     header.write_stdout(made.encode())
     return 0
 

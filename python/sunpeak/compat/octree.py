@@ -1,27 +1,20 @@
-"""What our `oconv` writes: a header as Radiance's, then the parts of a scene.
+"""Octree files: the parts of a scene, as oconv puts them together and rpict and rtrace read them.
 
 A part is a scene file by its absolute path, a command, or the text of primitives whose commands are done (`-f`,
-standard input). The format is our own, with a name of its own, so that Radiance's programs refuse it and ours
-refuse Radiance's.
+standard input). Our `oconv` writes a format of its own (`crates/scene/src/compiled/parts.rs`); Radiance's octrees
+are read too.
 """
 
-import json
 import os
 import subprocess
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from io import BytesIO
 from pathlib import Path
-from typing import Any
 
 from sunpeak import _core
 from sunpeak._core import InputError
-from sunpeak.compat import header
 
-FORMAT = "Sunpeak_octree"
-RADIANCE_FORMAT = "Radiance_octree"
-VERSION = 1
 ALLOW_COMMANDS = "SUNPEAK_ALLOW_COMMANDS"
 
 
@@ -53,32 +46,22 @@ class Octree:
     cwd: str
     """The folder that names in it are relative to."""
     parts: list[Part]
-    surfaces: int
-    """How many there were when it was written."""
+    surfaces: int | None = None
+    """How many there were when it was written, if that is known."""
     history: list[str] = field(default_factory=list)
     """Header lines that say how it was made."""
     name: str = "octree"
 
     def encode(self) -> bytes:
         """Give the bytes of its file."""
-        parts: list[dict[str, Any]] = []
-        texts = []
-        for part in self.parts:
-            if isinstance(part, File):
-                parts.append({"file": part.name})
-            else:
-                parts.append({"text": part.name, "directory": part.directory, "bytes": len(part.text)})
-                texts.append(part.text)
-        body = {"version": VERSION, "cwd": self.cwd, "surfaces": self.surfaces, "parts": parts}
-        lines = header.text([*self.history, f"FORMAT={FORMAT}"])
-        return b"".join([lines, json.dumps(body).encode(), b"\n", *texts])
+        return _core.write_octree(self.history, self.cwd, self.surfaces, core_parts(self.parts))
 
     def scene(self) -> _core.Scene:
         """Read the scene; refuse it where files have other surfaces than they had."""
         # Files that materials name are looked for where the program runs, too, as in Radiance.
         scene = load(self.parts, self.cwd, [str(Path.cwd())])
         found = len(scene.surface_names)
-        if found != self.surfaces:
+        if self.surfaces not in (None, found):
             raise InputError(
                 f"{self.name}: out of date: its files have {found} surfaces now, and had {self.surfaces} when it was "
                 "made; run oconv again"
@@ -121,32 +104,7 @@ def read(name: str | None) -> Octree:
 
 def decode(data: bytes, name: str) -> Octree:
     """Read the bytes of an octree file."""
-    file = BytesIO(data)
-    lines = header.read(file, name) if data.startswith(b"#?") else []
-    form = header.value(lines, "FORMAT")
-    if form == RADIANCE_FORMAT:
-        raise InputError(f"{name}: an octree of Radiance's oconv; make it with Sunpeak's (it names its scene: getinfo)")
-    if form != FORMAT:
-        raise InputError(f"{name}: not an octree; expected a file written by Sunpeak's oconv")
-    try:
-        body = json.loads(file.readline())
-        if body["version"] != VERSION:
-            raise InputError(f"{name}: version {body['version']} of the format; expected {VERSION}: run oconv again")
-        parts = [read_part(part, file) for part in body["parts"]]
-        octree = Octree(str(body["cwd"]), parts, int(body["surfaces"]), name=name)
-    except (ValueError, KeyError, TypeError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"{name}: a damaged octree ({error}); run oconv again") from error
-    octree.history = [line for line in lines[1:] if not line.startswith("FORMAT=")]
-    return octree
-
-
-def read_part(part: dict[str, Any], file: BytesIO) -> Part:
-    """Read one part, and its text."""
-    if "file" in part:
-        return File(str(part["file"]))
-    text = file.read(int(part["bytes"]))
-    if len(text) != int(part["bytes"]):
-        raise ValueError("it ends too early")
-    return Text(str(part["text"]), str(part["directory"]), text)
+    history, cwd, surfaces, parts = _core.read_octree(data, name)
+    read = [Text(part[0], str(part[2]), part[1]) if isinstance(part, tuple) else File(str(part)) for part in parts]
+    # Radiance's names are relative to where the program runs.
+    return Octree(str(Path.cwd() / cwd), read, surfaces, history, name)

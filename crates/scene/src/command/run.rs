@@ -9,7 +9,18 @@ use std::path::{Path, PathBuf};
 use sunpeak_core::{Error, Result};
 
 /// Programs that are done inside.
-const KNOWN: [&str; 7] = ["xform", "genbox", "genprism", "genblinds", "gensky", "gendaylit", "cat"];
+const KNOWN: [&str; 10] = [
+    "xform",
+    "genbox",
+    "genprism",
+    "genblinds",
+    "genrev",
+    "gensurf",
+    "genworm",
+    "gensky",
+    "gendaylit",
+    "cat",
+];
 
 /// One command line being done.
 pub(super) struct Run<'r, 'o> {

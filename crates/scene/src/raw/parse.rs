@@ -44,7 +44,8 @@ fn begins_primitive(line: &[u8]) -> bool {
     let mut words = line.split(|byte| byte.is_ascii_whitespace()).filter(|word| !word.is_empty());
     let Some(first) = words.next() else { return false };
     let second = words.next().and_then(|word| std::str::from_utf8(word).ok());
-    first[0] == b'!' || second.is_some_and(|word| PrimitiveType::find(word).is_some())
+    let is_type = |word: &str| first == b"void" || PrimitiveType::find(word).is_some();
+    first[0] == b'!' || second.is_some_and(is_type)
 }
 
 struct Parser<'t> {

@@ -3,8 +3,12 @@
 //! The order of the surfaces, of their vertices, and their names are those of Radiance's programs of the same names, so that scripts
 //! that pick surfaces by name or number go on working.
 
+mod functions;
 mod genblinds;
 mod genprism;
+mod genrev;
+mod gensurf;
+mod genworm;
 
 use crate::raw::{CommandLine, Primitive, PrimitiveType, parse_integer, parse_real};
 use std::sync::Arc;
@@ -22,6 +26,9 @@ pub(super) fn run(
     let made = match name {
         "genblinds" => genblinds::run(args, command),
         "genprism" => genprism::run(args, command, read),
+        "genrev" => genrev::run(args, command, read),
+        "gensurf" => gensurf::run(args, command, read),
+        "genworm" => genworm::run(args, command, read),
         _ => return None,
     };
     Some(made.map_err(|message| format!("{name}: {message}")))
@@ -66,6 +73,18 @@ impl<'c> Maker<'c> {
             directory: self.command.directory.clone(),
         });
         Ok(())
+    }
+}
+
+/// Refuse options that nothing knows.
+fn no_flags(options: &functions::Options, usage: &str) -> Result<(), String> {
+    match options.flags.first() {
+        None => Ok(()),
+        Some(&"-s") => Err(
+            "smoothing (-s) is not done inside: leave it out, or put the output of the program into a file"
+                .into(),
+        ),
+        Some(flag) => Err(format!("unknown option {flag}: expected {usage}")),
     }
 }
 
