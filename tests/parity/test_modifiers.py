@@ -1,4 +1,4 @@
-"""Patterns, textures and mixtures against `rtrace`, on few rays: what shines is seen directly, without random samples."""
+"""Patterns, textures and mixtures against `rtrace`, on few rays: what shines is seen directly, without samples."""
 
 from pathlib import Path
 
@@ -29,10 +29,16 @@ tex(a,b,c) = .1 * a * (b - c / 2); half3(a,b,c) = a / 9;
 
 
 def both(
-    radiance: Radiance, folder: Path, text: str, *options: str, rays: Floats | None = None, samples: int = 1
+    radiance: Radiance,
+    folder: Path,
+    text: str,
+    *options: str,
+    rays: Floats | None = None,
+    samples: int = 1,
+    definitions: str = "",
 ) -> tuple[Floats, Floats]:
     """What ours and theirs see along the rays."""
-    for name, content in [("grid.dat", GRID), ("falling.dat", FALLING), ("mine.cal", FUNCTIONS)]:
+    for name, content in [("grid.dat", GRID), ("falling.dat", FALLING), ("mine.cal", FUNCTIONS + definitions)]:
         (folder / name).write_text(content)
     (folder / "scene.rad").write_text(text)
     rays = np.hstack([ORIGINS, TOWARDS]) if rays is None else rays

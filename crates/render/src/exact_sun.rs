@@ -210,8 +210,9 @@ impl Chains<'_> {
             // Mixtures: the points of the disc are seen by many chains.
             let place = chain.ray.at(hit.t);
             let mut choose = || scattered(place);
-            let mut arrival = self.world.arrival(&hit, &chain.ray);
-            match self.world.meet(object, &mut arrival, true, &mut chain.inside, &mut choose) {
+            let inside = &mut chain.inside;
+            let (seen, arrival) = self.world.meet(&hit, &chain.ray, true, inside, [0.0; 2], &mut choose);
+            match seen {
                 Seen::Void => open.extend(chain.straight(&arrival, hit.t, Rgb::ONE)),
                 Seen::Emitter(_) => {}
                 Seen::Surface(material) => {

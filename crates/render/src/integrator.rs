@@ -28,12 +28,14 @@ const ROULETTE_CEILING: f64 = 0.95;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limits {
     pub max_bounces: Option<u32>,
+    /// Radiance of all that lies past the last diffuse bounce.
+    pub ambient: Rgb,
     pub max_depth: u32,
 }
 
 impl Limits {
     pub fn of(options: &RenderOptions) -> Self {
-        Self { max_bounces: options.max_bounces, max_depth: options.max_depth }
+        Self { max_bounces: options.max_bounces, ambient: options.ambient, max_depth: options.max_depth }
     }
 }
 
@@ -60,7 +62,7 @@ impl Integrator<'_> {
         let mut path = Path::from_camera(ray, f64::INFINITY, self.world.inside_at(&ray));
         let direct = self.direct(&path, &sensor, sampler);
         if !self.scatter(&mut path, &sensor, sampler) {
-            return direct;
+            return direct + path.ambient;
         }
         direct + self.trace(path, sampler)
     }
@@ -89,12 +91,12 @@ impl Integrator<'_> {
                 return sum + path.throughput * self.light_from_infinity(&path);
             };
             let object = self.world.object(&hit);
-            let mut arrival = self.world.arrival(&hit, &path.ray);
-            let view = path.is_view();
-            path.travel(hit.t);
-            path.tell(&mut arrival);
+            let (view, way) = (path.is_view(), path.way());
             let mut choose = || sampler.next_1d();
-            match self.world.meet(object, &mut arrival, view, &mut path.inside, &mut choose) {
+            let inside = &mut path.inside;
+            let (seen, arrival) = self.world.meet(&hit, &path.ray, view, inside, way, &mut choose);
+            path.travel(hit.t);
+            match seen {
                 Seen::Void => path.go_straight(arrival.point, Rgb::ONE),
                 Seen::Emitter(emitter) => {
                     return sum + path.throughput * self.light_from_lamp(&path, object, &arrival, emitter);
@@ -106,7 +108,7 @@ impl Integrator<'_> {
                         sum += path.throughput * self.direct(&path, &met, sampler);
                     }
                     if !self.go_on(&mut path, &met, sampler) || !survives(&mut path, sampler) {
-                        return sum;
+                        return sum + path.ambient;
                     }
                 }
             }
@@ -128,8 +130,11 @@ impl Integrator<'_> {
         } else if choice < straight + mirrored {
             path.mirror(&met.arrival, met.scattering.mirrored * (whole / mirrored), met.is_flat);
         } else if choice < straight + mirrored + refracted {
-            let Some((direction, share)) = met.scattering.refracted else { return false };
-            path.refract(&met.arrival, direction, share * (whole / refracted), met.material);
+            let [first, second] = met.scattering.refracted;
+            let of_first = first.map_or(0.0, |(_, share)| luminance(share));
+            let is_first = choice - straight - mirrored < of_first;
+            let Some((direction, share)) = (if is_first { first } else { second }) else { return false };
+            path.refract(&met.arrival, direction, share * (whole / luminance(share)), met.material);
         } else {
             return self.scatter(path, met, sampler);
         }
@@ -152,6 +157,8 @@ impl Integrator<'_> {
             let diffuse = luminance(sample.weight.diffuse) / luminance(weight);
             let is_diffuse = sampler.next_1d() < diffuse;
             if is_diffuse && path.bounces >= limit {
+                path.ambient =
+                    path.throughput * sample.weight.diffuse / (diffuse * share) * self.limits.ambient;
                 return false;
             }
             weight = if is_diffuse {
@@ -202,7 +209,7 @@ struct Met<'w> {
 impl<'w> Met<'w> {
     fn new(object: &Object, material: &'w Material, arrival: Arrival, view: bool) -> Self {
         let scattering = material.scatter(&arrival, view);
-        let refracted = scattering.refracted.map_or(0.0, |(_, share)| luminance(share));
+        let refracted = scattering.refracted.iter().flatten().map(|(_, share)| luminance(*share)).sum();
         let [straight, mirrored] = [scattering.straight, scattering.mirrored].map(luminance);
         let shares = [straight, mirrored, refracted, scattering.smooth.albedo()];
         let is_flat = matches!(object.facing, Facing::Flat(_));

@@ -5,7 +5,7 @@ use crate::accel::Hit;
 use crate::light::LightSample;
 use crate::material::{Alternate, Arrival, Dielectric, EmitterKind, Inside, Material, Varying};
 use crate::shapes::{COINCIDENT, Ray};
-use crate::world::Boundary;
+use crate::world::Seen;
 use sunpeak_bsdf::PeakRule;
 use sunpeak_core::{Rgb, Vec3};
 
@@ -130,8 +130,10 @@ impl World {
             };
             let point = ray.at(hit.t);
             travelled += hit.t;
-            if let Some(met) = self.meet_volume(self.object(&hit), &self.arrival(&hit, &ray), &mut inside) {
-                if !matches!(met, Boundary::Null) || result.is_blocked() {
+            if let Some((seen, _)) =
+                self.meet_volume(self.object(&hit), &self.arrival(&hit, &ray), &mut inside)
+            {
+                if !matches!(seen, Seen::Void) || result.is_blocked() {
                     return Transmitted::BLOCKED;
                 }
                 ray = Ray::past(point, ray.direction);

@@ -7,7 +7,7 @@ use crate::accel::{Accel, Hit};
 use crate::guide::Guide;
 use crate::light::{DistantSources, Lamps};
 use crate::material::{
-    Air, Alternate, Arrival, Emitter, EmitterKind, Inside, Material, MaterialId, fault_of,
+    Air, Alternate, Arrival, Emitter, EmitterKind, Inside, Material, MaterialId, Prism, fault_of,
     fault_of_orientation,
 };
 use crate::shapes::{COINCIDENT, MeshSurface, Ray};
@@ -16,16 +16,23 @@ use sunpeak_bsdf::PeakRule;
 use sunpeak_core::{Result, Rgb, Vec3};
 use sunpeak_scene::Scene;
 
+/// Materials that show others in their place: so many in a row.
+const MAX_ALTERNATES: usize = 100;
+
 /// Surfaces in one hierarchy, materials and emitters. Immutable, shared by all threads.
 #[derive(Debug)]
 pub struct World {
     pub(crate) accel: Accel,
     pub(crate) objects: Vec<Object>,
+    /// Of each object: which surface of the scene it is.
+    pub(crate) surfaces: Vec<u32>,
     pub(crate) materials: Vec<Material>,
     pub(crate) distant: DistantSources,
     pub(crate) lamps: Lamps,
     /// Objects that are planar mirrors.
     pub(crate) mirrors: Vec<u32>,
+    /// Objects that are prisms, and a point of each.
+    pub(crate) prisms: Vec<(u32, Vec3)>,
     pub(crate) rule: PeakRule,
     pub(crate) rays: AtomicU64,
     /// Where diffuse surfaces look for light, if there are shades.
@@ -54,14 +61,6 @@ pub(crate) enum Facing {
     Curved(u32),
     /// From a triangle of a mesh, which has local coordinates or normals to interpolate.
     Mesh { mesh: u32, triangle: u32 },
-}
-
-/// What a path meets where volumes begin and end.
-pub(crate) enum Boundary {
-    /// Nothing that it would notice.
-    Null,
-    /// The face of a solid that antimatter cuts.
-    Face(MaterialId),
 }
 
 /// What a path meets at a surface.
@@ -127,23 +126,26 @@ impl World {
         Arrival { distance: hit.t, travelled: hit.t, ..Arrival::new(point, normal, ray.direction) }
     }
 
-    /// What a path that is in these volumes meets; they change where it passes a boundary. Otherwise as `seen`.
+    /// What a path that is in these volumes meets; they change where it passes a boundary. `way` is how far the path has come before:
+    /// since it was last scattered, and since the camera [m]. `choose` gives random numbers in [0, 1), for mixtures.
     pub(crate) fn meet(
         &self,
-        object: &Object,
-        arrival: &mut Arrival,
+        hit: &Hit,
+        ray: &Ray,
         view: bool,
         inside: &mut Inside,
+        way: [f64; 2],
         choose: &mut dyn FnMut() -> f64,
-    ) -> Seen<'_> {
-        match self.meet_volume(object, arrival, inside) {
-            Some(Boundary::Null) => Seen::Void,
-            Some(Boundary::Face(face)) => {
-                *arrival = arrival.turned();
-                self.alternate(Some(face), arrival, choose)
-            }
-            None => self.seen(object, arrival, view, choose),
-        }
+    ) -> (Seen<'_>, Arrival) {
+        let mut arrival = self.arrival(hit, ray);
+        arrival.distance += way[0];
+        arrival.travelled += way[1];
+        let object = self.object(hit);
+        let (seen, mut arrival) = match self.meet_volume(object, &arrival, inside) {
+            Some(met) => met,
+            None => (self.seen(object.material, &arrival, view), arrival),
+        };
+        (self.resolved(seen, &mut arrival, view, choose), arrival)
     }
 
     /// Boundaries of volumes and what they hide; `None` for all other surfaces.
@@ -152,22 +154,21 @@ impl World {
         object: &Object,
         arrival: &Arrival,
         inside: &mut Inside,
-    ) -> Option<Boundary> {
+    ) -> Option<(Seen<'_>, Arrival)> {
         if !self.has_volumes {
             return None;
         }
         let (id, at_front) = (object.material, arrival.at_front());
-        let volume = self.volume(id);
-        match self.material(volume) {
-            Material::Antimatter(antimatter) if !at_front && inside.is_in_clipped(volume) => {
+        match self.material(id) {
+            Material::Antimatter(antimatter) if !at_front && inside.is_in_clipped(id) => {
                 // The ray has come into a solid that does not exist here, and now it does: the cut face.
-                if let Some(face) = antimatter.face {
-                    return Some(Boundary::Face(face));
+                if antimatter.face.is_some() {
+                    return Some((self.alternate(antimatter.face), arrival.turned()));
                 }
-                inside.leave(volume);
+                inside.leave(id);
             }
-            Material::Mist(_) | Material::Antimatter(_) if at_front => inside.enter(volume),
-            Material::Mist(_) | Material::Antimatter(_) => inside.leave(volume),
+            Material::Mist(_) | Material::Antimatter(_) if at_front => inside.enter(id),
+            Material::Mist(_) | Material::Antimatter(_) => inside.leave(id),
             _ => {
                 let clips = |volume: &MaterialId| match self.material(*volume) {
                     Material::Antimatter(antimatter) => antimatter.clipped.contains(&id),
@@ -177,15 +178,7 @@ impl World {
                 inside.cross_clipped(clipping, at_front);
             }
         }
-        Some(Boundary::Null)
-    }
-
-    /// The material itself where it has patterns, which mean nothing to a volume.
-    fn volume(&self, id: MaterialId) -> MaterialId {
-        match self.material(id) {
-            Material::Varying(varying) => varying.material.unwrap_or(id),
-            _ => id,
-        }
+        Some((Seen::Void, *arrival))
     }
 
     /// The air in these volumes, if there is mist.
@@ -207,7 +200,7 @@ impl World {
         }
         let mut crossings: Vec<(Hit, bool)> = Vec::new();
         self.accel.each_crossing(ray, f64::INFINITY, |hit| {
-            let is_mist = matches!(self.material(self.volume(self.object(&hit).material)), Material::Mist(_));
+            let is_mist = matches!(self.material(self.object(&hit).material), Material::Mist(_));
             let is_seam = |(h, _): &(Hit, bool)| h.object == hit.object && (h.t - hit.t).abs() <= COINCIDENT;
             if is_mist && !crossings.iter().any(is_seam) {
                 crossings.push((hit, self.arrival(&hit, ray).at_front()));
@@ -217,54 +210,47 @@ impl World {
         crossings.sort_by(|(a, _), (b, _)| a.t.total_cmp(&b.t));
         // From far away back to the point.
         for (hit, at_front) in crossings.into_iter().rev() {
-            let volume = self.volume(self.object(&hit).material);
+            let volume = self.object(&hit).material;
             if at_front { inside.leave(volume) } else { inside.enter(volume) }
         }
         inside
     }
 
     /// What a path sees. `view`: it comes from the camera and met only mirrors and clear panes.
-    /// Patterns, textures and mixtures change the arrival; `choose` gives random numbers in [0, 1).
-    pub(crate) fn seen(
-        &self,
-        object: &Object,
-        arrival: &mut Arrival,
-        view: bool,
-        choose: &mut dyn FnMut() -> f64,
-    ) -> Seen<'_> {
-        match self.material(object.material) {
-            Material::Varying(varying) => {
-                let (material, modulation) = varying.at(&arrival.ray_state(), choose);
-                *arrival = arrival.modulated(&modulation);
-                material.map_or(Seen::Void, |id| self.seen_material(id, arrival, view, choose))
-            }
-            _ => self.seen_material(object.material, arrival, view, choose),
-        }
-    }
-
-    fn seen_material(
-        &self,
-        id: MaterialId,
-        arrival: &mut Arrival,
-        view: bool,
-        choose: &mut dyn FnMut() -> f64,
-    ) -> Seen<'_> {
+    /// Patterns, textures and mixtures are still to be [`Self::resolved`].
+    fn seen(&self, id: MaterialId, arrival: &Arrival, view: bool) -> Seen<'_> {
         match self.material(id) {
             Material::Emitter(emitter) => match emitter.kind {
-                EmitterKind::Illum { alternate } if view || !arrival.at_front() => {
-                    self.alternate(alternate, arrival, choose)
-                }
+                EmitterKind::Illum { alternate } if view || !arrival.at_front() => self.alternate(alternate),
                 _ => Seen::Emitter(emitter),
             },
             Material::Mirror(mirror) => match mirror.alternate {
                 Some(alternate) if view || !arrival.at_front() || self.is_transparent(alternate) => {
-                    self.alternate(alternate, arrival, choose)
+                    self.alternate(alternate)
                 }
                 _ => Seen::Surface(self.material(id)),
             },
             Material::Table(table) if table.is_passed(arrival, view) => Seen::Void,
             material => Seen::Surface(material),
         }
+    }
+
+    /// Evaluate patterns, textures and mixtures; they change the arrival.
+    fn resolved<'w>(
+        &'w self,
+        mut seen: Seen<'w>,
+        arrival: &mut Arrival,
+        view: bool,
+        choose: &mut dyn FnMut() -> f64,
+    ) -> Seen<'w> {
+        // What varies may show an alternate that varies, but not for ever.
+        for _ in 0..MAX_ALTERNATES {
+            let Seen::Surface(Material::Varying(varying)) = seen else { return seen };
+            let (material, modulation) = varying.at(&arrival.ray_state(), choose);
+            *arrival = arrival.modulated(&modulation);
+            seen = material.map_or(Seen::Void, |id| self.seen(id, arrival, view));
+        }
+        Seen::Void
     }
 
     /// Reflectance of an object that is a mirror, where a ray meets it.
@@ -284,6 +270,19 @@ impl World {
         }
     }
 
+    /// The prism that an object is.
+    pub(crate) fn prism(&self, object: u32) -> Option<&Prism> {
+        let id = self.objects[object as usize].material;
+        let prism = |id: MaterialId| match self.material(id) {
+            Material::Prism(prism) => Some(prism),
+            _ => None,
+        };
+        match self.material(id) {
+            Material::Varying(varying) => varying.materials().into_iter().find_map(prism),
+            _ => prism(id),
+        }
+    }
+
     /// What is wrong with an expression of the scene, if an evaluation has found that out.
     pub(crate) fn check_expressions(&self) -> Result<()> {
         let fault = |material: &Material| match material {
@@ -291,28 +290,15 @@ impl World {
             Material::Emitter(emitter) => fault_of(&emitter.patterns),
             Material::Ward(ward) => ward.fault(),
             Material::Ashikhmin(m) => fault_of_orientation(&m.orientation),
+            Material::Function(function) => function.field.fault(),
+            Material::Prism(prism) => prism.field.fault(),
             _ => None,
         };
         self.materials.iter().find_map(fault).map_or(Ok(()), Err)
     }
 
-    /// A material that takes another one's place, itself without alternates.
-    fn alternate(
-        &self,
-        alternate: Alternate,
-        arrival: &mut Arrival,
-        choose: &mut dyn FnMut() -> f64,
-    ) -> Seen<'_> {
-        let id = match alternate.map(|id| (id, self.material(id))) {
-            Some((_, Material::Varying(varying))) => {
-                let (material, modulation) = varying.at(&arrival.ray_state(), choose);
-                *arrival = arrival.modulated(&modulation);
-                material
-            }
-            Some((id, _)) => Some(id),
-            None => None,
-        };
-        match id.map(|id| self.material(id)) {
+    fn alternate(&self, alternate: Alternate) -> Seen<'_> {
+        match alternate.map(|id| self.material(id)) {
             None => Seen::Void,
             Some(Material::Emitter(emitter)) => Seen::Emitter(emitter),
             Some(material) => Seen::Surface(material),

@@ -12,6 +12,7 @@
 //! # Ok::<(), sunpeak_core::Error>(())
 //! ```
 
+mod check;
 mod command;
 mod compiled;
 mod disc_coverage;
@@ -24,13 +25,15 @@ pub mod raw;
 mod scene;
 mod view;
 
+pub use check::SceneCheck;
+pub use compiled::{OctreeFile, decode_octree};
 pub use disc_coverage::disc_coverage;
 pub use field::{DataArray, Field, RayState, Spectrum};
 pub use files::LoadOptions;
-pub use load::load_primitives;
+pub use load::{Source, load_primitives};
 pub use picture::{BlockErrors, ExactSource, Picture};
 pub use scene::{
-    Anisotropy, BsdfMaterial, Material, Medium, Mesh, Modifier, ModifierId, ModifierKind, Orientation,
-    Pattern, Scene, Shape, Surface, Ward,
+    Anisotropy, BsdfMaterial, FunctionMaterial, FunctionValue, Material, Medium, Mesh, Modifier, ModifierId,
+    ModifierKind, Orientation, Pattern, Scene, Shape, Surface, Ward,
 };
 pub use view::{Camera, PixelRay, View, ViewKind, ViewRay};

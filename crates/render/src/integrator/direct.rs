@@ -8,7 +8,9 @@ use crate::material::{Arrival, Emitter, Inside, Smooth, reflect};
 use crate::shapes::Ray;
 use crate::transmit::Target;
 use crate::world::{Facing, Object};
+use glam::DQuat;
 use sunpeak_core::{Rgb, Sampler, Vec3};
+use sunpeak_scene::RayState;
 
 /// Up to so many pairs of sun and mirror are all tried at every vertex; of more, one at random.
 const ALL_REFLECTED_SUNS: usize = 4;
@@ -31,6 +33,9 @@ impl Integrator<'_> {
             }
         }
         sum += self.suns_in_mirrors(&receiver, sampler);
+        if !self.world.prisms.is_empty() {
+            sum += self.suns_through_prisms(&receiver, sampler);
+        }
         if self.world.distant.has_dome()
             && let Some(sample) = self.world.distant.sample_dome(sampler.next_2d())
         {
@@ -116,6 +121,58 @@ impl Integrator<'_> {
         let reflectance = world.mirror_reflectance(&Hit { t: hit, object: mirror }, &ray);
         let factor = receiver.cosine(ray.direction) / sample.pdf;
         value.total() * sample.radiance * to_mirror.share * reflectance * to_sun.share * factor
+    }
+
+    /// Suns that prisms send in another direction: virtual sources too.
+    fn suns_through_prisms(&self, receiver: &Receiver, sampler: &mut Sampler) -> Rgb {
+        let mut sum = Rgb::ZERO;
+        for &sun in self.world.distant.suns() {
+            for &(object, place) in &self.world.prisms {
+                for way in 0..self.world.prism(object).map_or(0, |prism| prism.ways) {
+                    sum += self.sun_through_prism(receiver, sun, (object, place), way, sampler.next_2d());
+                }
+            }
+        }
+        sum
+    }
+
+    fn sun_through_prism(
+        &self,
+        receiver: &Receiver,
+        sun: usize,
+        (object, place): (u32, Vec3),
+        way: usize,
+        u: [f64; 2],
+    ) -> Rgb {
+        let world = self.world;
+        let (Some(prism), Some(sample)) = (world.prism(object), world.distant.sample_sun(sun, u)) else {
+            return Rgb::ZERO;
+        };
+        let Facing::Flat(normal) = world.objects[object as usize].facing else { return Rgb::ZERO };
+        // Where the sun's light goes behind the prism: from there the sun is seen.
+        let center = world.distant.get(sun).direction;
+        let light = RayState::new(place, normal, -center, 0.0);
+        let Some((_, leaving)) = prism.way(way, &light, Vec3::ZERO) else { return Rgb::ZERO };
+        let direction = DQuat::from_rotation_arc(center, -leaving) * sample.direction;
+        let ray = Ray::new(receiver.origin(direction), direction);
+        let Some(hit) = world.accel.crossing_of(&ray, object) else { return Rgb::ZERO };
+        let value = receiver.smooth_value(&LightSample { direction, ..sample });
+        if value.total() == Rgb::ZERO || !receiver.arrival.agrees_on(direction) {
+            return Rgb::ZERO;
+        }
+        let met = RayState::new(ray.at(hit), normal, direction, hit);
+        let Some((share, onwards)) = prism.way(way, &met, center) else { return Rgb::ZERO };
+        if world.distant.seen(onwards) != Some(sun) {
+            return Rgb::ZERO;
+        }
+        let to_prism = world.transmitted(&ray, &Target::point(hit, object), receiver.inside);
+        if to_prism.is_blocked() {
+            return Rgb::ZERO;
+        }
+        let onwards = Ray::new(ray.at(hit), onwards);
+        let to_sun = world.transmitted(&onwards, &Target::sun(sun, &sample), world.inside_at(&onwards));
+        let factor = share * receiver.cosine(direction) / sample.pdf;
+        value.total() * sample.radiance * to_prism.share * to_sun.share * factor
     }
 
     /// What a path that meets nothing finds at infinity.

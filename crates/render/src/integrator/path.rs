@@ -35,13 +35,15 @@ pub(super) struct Path {
     pub is_distorted: bool,
     /// Direction of the first segment.
     pub first_direction: Vec3,
+    /// What the light past the last diffuse bounce adds at the end.
+    pub ambient: Rgb,
     /// Extinction of the solid that the path is in [1/m].
     extinction: Rgb,
-    /// Mist and antimatter that the path is in.
-    pub inside: Inside,
     /// Way since the camera, and since the path was last scattered, mirrored or refracted [m].
     travelled: f64,
     distance: f64,
+    /// Mist and antimatter that the path is in.
+    pub inside: Inside,
 }
 
 impl Path {
@@ -57,10 +59,11 @@ impl Path {
             is_past_peak: false,
             is_distorted: false,
             first_direction: ray.direction,
+            ambient: Rgb::ZERO,
             extinction: Rgb::ZERO,
-            inside,
             travelled: 0.0,
             distance: 0.0,
+            inside,
         }
     }
 
@@ -80,9 +83,9 @@ impl Path {
         }
     }
 
-    /// How far the path has come.
-    pub fn tell(&self, arrival: &mut Arrival) {
-        (arrival.travelled, arrival.distance) = (self.travelled, self.distance);
+    /// Way since the path was last scattered, mirrored or refracted, and since the camera [m].
+    pub fn way(&self) -> [f64; 2] {
+        [self.distance, self.travelled]
     }
 
     /// Weaken the way to the face of a solid that the path did not enter by a face: it started inside.

@@ -59,7 +59,7 @@ impl Glass {
             // Patterns multiply what comes through, and nothing else, as in Radiance.
             straight: self.transmittance(cosine) * arrival.tint,
             mirrored: self.reflectance(cosine),
-            refracted: None,
+            refracted: [None; 2],
             smooth: Smooth::None,
         }
     }

@@ -3,7 +3,9 @@
 mod ashikhmin;
 mod dielectric;
 mod emitter;
+mod function;
 mod glass;
+mod prism;
 mod smooth;
 mod table;
 mod varying;
@@ -14,6 +16,7 @@ pub(crate) use ashikhmin::Ashikhmin;
 pub(crate) use dielectric::Dielectric;
 pub(crate) use emitter::{Emitter, EmitterKind};
 pub(crate) use glass::Glass;
+pub(crate) use prism::Prism;
 pub(crate) use smooth::{Smooth, SmoothSample, SmoothValue};
 pub(crate) use table::Table;
 pub(crate) use varying::{Mixture, Step, Varying, fault_of, tint_of};
@@ -51,6 +54,10 @@ pub(crate) enum Material {
     Mist(Mist),
     /// `antimatter`, likewise.
     Antimatter(Antimatter),
+    /// `plasfunc`, `BRTDfunc` and their like.
+    Function(Box<sunpeak_scene::FunctionMaterial>),
+    /// `prism1`, `prism2`.
+    Prism(Prism),
     /// Any of these with patterns, textures or mixtures. Only the world can tell which, so that to the questions here it is nothing.
     Varying(Varying),
 }
@@ -170,8 +177,8 @@ pub(crate) struct Scattering<'w> {
     pub straight: Rgb,
     /// Share that is mirrored.
     pub mirrored: Rgb,
-    /// Share that is refracted, and where to.
-    pub refracted: Option<(Vec3, Rgb)>,
+    /// Where rays are refracted to, and with what share; a prism has two ways.
+    pub refracted: [Option<(Vec3, Rgb)>; 2],
     /// All the rest.
     pub smooth: Smooth<'w>,
 }
@@ -179,7 +186,7 @@ pub(crate) struct Scattering<'w> {
 impl Scattering<'_> {
     /// Nothing comes back from the surface.
     pub const BLACK: Scattering<'static> =
-        Scattering { straight: Rgb::ZERO, mirrored: Rgb::ZERO, refracted: None, smooth: Smooth::None };
+        Scattering { straight: Rgb::ZERO, mirrored: Rgb::ZERO, refracted: [None; 2], smooth: Smooth::None };
 }
 
 impl Material {
@@ -193,6 +200,8 @@ impl Material {
             Self::Mirror(m) if arrival.at_front() => {
                 Scattering { mirrored: m.reflectance * arrival.tint, ..Scattering::BLACK }
             }
+            Self::Function(m) => function::scatter(m, arrival),
+            Self::Prism(m) => m.scatter(arrival),
             Self::Mirror(_) | Self::Emitter(_) | Self::Varying(_) => Scattering::BLACK,
             Self::Mist(_) | Self::Antimatter(_) => Scattering { straight: Rgb::ONE, ..Scattering::BLACK },
             Self::Table(m) => m.scatter(arrival, view),
@@ -207,6 +216,7 @@ impl Material {
             Self::Glass(m) => m.transmittance(arrival.cosine()) * arrival.tint,
             Self::Table(m) => m.straight(arrival, direct),
             Self::Mist(_) | Self::Antimatter(_) => Rgb::ONE,
+            Self::Function(m) => function::straight(m, arrival),
             _ => Rgb::ZERO,
         }
     }
@@ -215,6 +225,7 @@ impl Material {
     pub fn is_shade(&self) -> bool {
         match self {
             Self::Ward(m) => m.is_trans(),
+            Self::Function(m) => (m.diffuse_transmission + m.transmission).max_element() > 0.0,
             Self::Table(_) => true,
             _ => false,
         }
@@ -226,6 +237,8 @@ impl Material {
         match self {
             Self::Glass(_) | Self::Dielectric(_) | Self::Mist(_) | Self::Antimatter(_) => true,
             Self::Ward(m) => m.is_trans(),
+            Self::Function(m) => (m.diffuse_transmission + m.transmission).max_element() > 0.0,
+            Self::Prism(_) => true,
             Self::Table(m) => m.is_aperture,
             _ => false,
         }

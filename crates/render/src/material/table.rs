@@ -90,7 +90,7 @@ impl Table {
             },
         };
         let smooth = if lobes.albedo() > 0.0 { Smooth::Table(lobes) } else { Smooth::None };
-        Scattering { straight, mirrored: Rgb::ZERO, refracted: None, smooth }
+        Scattering { straight, mirrored: Rgb::ZERO, refracted: [None; 2], smooth }
     }
 }
 

@@ -181,7 +181,7 @@ impl WardMaterial {
         Scattering {
             straight: delta(shares.specular_transmission),
             mirrored: delta(shares.specular),
-            refracted: None,
+            refracted: [None; 2],
             smooth,
         }
     }

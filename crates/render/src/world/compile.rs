@@ -7,7 +7,7 @@ use crate::guide::Guide;
 use crate::light::{Distant, DistantSources, Lamp, LampShape, Lamps};
 use crate::material::{
     Alternate, Antimatter, Ashikhmin, Dielectric, Emitter, EmitterKind, Glass, Material, MaterialId, Mirror,
-    Mist, Mixture, Step, Table, Varying, WardMaterial,
+    Mist, Mixture, Prism, Step, Table, Varying, WardMaterial,
 };
 use crate::shapes::{Analytic, Cone, MeshSurface, Polygon, Ring, Sphere, Triangle};
 use std::{collections::HashMap, path::Path, sync::Arc};
@@ -26,7 +26,8 @@ const NO_THICKNESS: f64 = 1e-6;
 
 pub(super) fn compile(scene: &Scene, options: &WorldOptions) -> Result<World> {
     let mut compiler = Compiler::new(scene, options);
-    for surface in &scene.surfaces {
+    for (index, surface) in scene.surfaces.iter().enumerate() {
+        compiler.current = index as u32;
         compiler.add(surface)?;
     }
     compiler.finish()
@@ -44,10 +45,15 @@ struct Compiler<'s> {
     sources: Vec<Distant>,
     lamps: Vec<Lamp>,
     mirrors: Vec<u32>,
+    prisms: Vec<(u32, Vec3)>,
     shades: Vec<Triangle>,
     meshes: Vec<MeshSurface>,
     /// Of each object: where its modifier stands in the scene. Of surfaces at the same place the later is seen.
     ranks: Vec<u32>,
+    /// Of each object: which surface of the scene it is.
+    surfaces: Vec<u32>,
+    /// The surface that is being taken in.
+    current: u32,
 }
 
 impl<'s> Compiler<'s> {
@@ -64,9 +70,12 @@ impl<'s> Compiler<'s> {
             sources: Vec::new(),
             lamps: Vec::new(),
             mirrors: Vec::new(),
+            prisms: Vec::new(),
             shades: Vec::new(),
             meshes: Vec::new(),
             ranks: Vec::new(),
+            surfaces: Vec::new(),
+            current: 0,
         }
     }
 
@@ -78,10 +87,12 @@ impl<'s> Compiler<'s> {
         Ok(World {
             accel: Accel::build(self.primitives, self.analytic)?,
             objects: self.objects,
+            surfaces: self.surfaces,
             materials: self.materials,
             distant,
             lamps: Lamps::new(self.lamps),
             mirrors: self.mirrors,
+            prisms: self.prisms,
             rule: self.options.peak,
             rays: Default::default(),
             guide: Guide::new(self.shades, suns),
@@ -226,9 +237,11 @@ impl<'s> Compiler<'s> {
                     return Err(Error::input(surface.location.clone(), message));
                 }
                 (Material::Mirror(_), Facing::Flat(_)) => self.mirrors.push(object),
+                (Material::Prism(_), Facing::Flat(_)) => self.prisms.push((object, a_point(&surface.shape))),
                 _ => {}
             }
         }
+        self.surfaces.push(self.current);
         self.ranks.push(surface.modifier.map_or(0, |id| id.0 as u32));
         self.objects.push(Object { material, facing, lamp: None });
         Ok(object)
@@ -390,6 +403,8 @@ impl<'s> Compiler<'s> {
                 Material::Mirror(Mirror { reflectance: *reflectance, alternate })
             }
             Said::Bsdf(bsdf) => Material::Table(self.compile_table(bsdf)?),
+            Said::Function(function) => Material::Function(function.clone()),
+            Said::Prism { field, ways } => Material::Prism(Prism { field: field.clone(), ways: *ways }),
             Said::Light(_) | Said::Illum { .. } | Said::Glow { .. } | Said::Spotlight { .. } => {
                 return Err(Error::input(location.clone(), "an emitter that is none"));
             }
@@ -461,6 +476,15 @@ impl<'s> Compiler<'s> {
         let bsdf = Arc::new(Bsdf::load(file)?);
         self.bsdfs.insert(file, bsdf.clone());
         Ok(bsdf)
+    }
+}
+
+/// Some point of a flat surface.
+fn a_point(shape: &Shape) -> Vec3 {
+    match shape {
+        Shape::Polygon(vertices) => vertices.iter().sum::<Vec3>() / vertices.len().max(1) as f64,
+        Shape::Ring { center, .. } => *center,
+        _ => Vec3::ZERO,
     }
 }
 

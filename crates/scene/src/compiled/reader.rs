@@ -23,42 +23,55 @@ pub struct Reader {
 }
 
 impl Reader {
+    /// The bytes of a file.
+    pub fn new(bytes: Vec<u8>, path: &Path) -> Self {
+        Self { path: path.to_path_buf(), bytes, at: 0, object_size: 0 }
+    }
+
     /// Read a file of this `format`, whose magic number is `magic` plus the size of object numbers; `what` says what it is.
     pub fn open(path: &Path, format: &str, magic: i64, what: &str) -> Result<Self> {
-        let mut reader = Self { path: path.to_path_buf(), bytes: read(path)?, at: 0, object_size: 0 };
-        reader.header(format, what)?;
-        let size = reader.integer(2)? - magic;
-        if !(1..=8).contains(&size) {
-            return Err(reader.error(format!("not {what} of a version that is known")));
-        }
-        reader.object_size = size as usize;
+        let mut reader = Self::new(read(path)?, path);
+        let header = reader.header()?;
+        let found = header.iter().rev().find_map(|line| line.strip_prefix("FORMAT=")).map(str::trim);
+        reader.expect_format(found, format, magic, what)?;
         Ok(reader)
     }
 
-    /// Text lines up to an empty one, one of which says the format.
-    fn header(&mut self, format: &str, what: &str) -> Result<()> {
-        let expected = format!("expected {what} with a line FORMAT={format} in its header");
-        let mut is_found = false;
+    /// The header's format is the one that is wanted, and the magic number follows.
+    pub fn expect_format(&mut self, found: Option<&str>, format: &str, magic: i64, what: &str) -> Result<()> {
+        if found != Some(format) {
+            let found = found.map_or("none".into(), |found| format!("FORMAT={found}"));
+            let expected = format!("expected {what} with a line FORMAT={format} in its header");
+            return Err(self.error(format!("{expected}, found {found}")));
+        }
+        let size = self.integer(2)? - magic;
+        if !(1..=8).contains(&size) {
+            return Err(self.error(format!("not {what} of a version that is known")));
+        }
+        self.object_size = size as usize;
+        Ok(())
+    }
+
+    /// Text lines up to an empty one.
+    pub fn header(&mut self) -> Result<Vec<String>> {
+        let mut lines = Vec::new();
         loop {
             let rest = &self.bytes[self.at..];
             let Some(length) = rest.iter().position(|&b| b == b'\n') else {
-                return Err(self.error(format!("{expected}, found no header")));
+                return Err(self.error("expected lines of text and an empty one, found no header"));
             };
-            let line = String::from_utf8_lossy(&rest[..length]);
-            let line = line.trim();
+            let line = String::from_utf8_lossy(&rest[..length]).trim().to_string();
             self.at += length + 1;
             if line.is_empty() {
-                break;
+                return Ok(lines);
             }
-            if let Some(found) = line.strip_prefix("FORMAT=") {
-                if found.trim() != format {
-                    let message = format!("{expected}, found FORMAT={}", found.trim());
-                    return Err(self.error(message));
-                }
-                is_found = true;
-            }
+            lines.push(line);
         }
-        if is_found { Ok(()) } else { Err(self.error(format!("{expected}, found none"))) }
+    }
+
+    /// All that is left.
+    pub fn rest(&self) -> &[u8] {
+        &self.bytes[self.at..]
     }
 
     /// Where the file lies.

@@ -134,9 +134,10 @@ impl FunctionFiles {
 /// The primitive's own place is said once, where the message ends up; a place in a function file is kept.
 fn told(error: Error, primitive: &Primitive) -> String {
     match error {
-        Error::Input { location, message } if location == primitive.location || location.file.is_empty() => {
-            message
+        Error::Input { location, message } if location != primitive.location && !location.file.is_empty() => {
+            format!("{location}: {message}")
         }
+        Error::Input { message, .. } => message,
         other => other.to_string(),
     }
 }

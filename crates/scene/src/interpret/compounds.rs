@@ -1,11 +1,13 @@
 //! `instance` and `mesh`: surfaces out of octree and mesh files. Each use makes surfaces of its own in world axes.
 
 use super::{Interpreter, Named, Reference, args::title};
-use crate::compiled::{MeshFile, Octree, Part, read_mesh, read_octree};
+use crate::compiled::{MeshFile, Part, read_mesh, read_octree};
 use crate::{
-    Mesh, ModifierId, Shape, Surface,
+    LoadOptions, Mesh, ModifierId, Shape, Source, Surface,
     command::{Expander, Invocation, trailing_transform},
-    raw::{Class, CommandLine, Item, Primitive},
+    files::folder_of,
+    load::load_source,
+    raw::{Class, Primitive},
 };
 use std::{
     collections::HashMap,
@@ -100,30 +102,22 @@ impl Interpreter<'_> {
         if let Some(known) = self.compounds.octrees.get(path) {
             return Ok(known.clone());
         }
-        let primitives = match read_octree(path)? {
-            Octree::Frozen(primitives) => primitives,
-            Octree::Files(files) => {
-                let mut expander = Expander::new(self.options);
-                let mut primitives = Vec::new();
-                let folder = crate::files::folder_of(path);
-                for file in files {
-                    let location = user.location.clone();
-                    primitives.extend(match file.strip_prefix('!') {
-                        Some(command) => {
-                            let text = command.to_string();
-                            let command = CommandLine { text, location, directory: folder.as_path().into() };
-                            expander.expand(vec![Item::Command(command)], &self.cwd)?
-                        }
-                        None => {
-                            let found = self.options.find(&file, &self.cwd, &folder, &location)?;
-                            expander.file(&found, &self.cwd)?
-                        }
-                    });
-                }
-                self.scene.warnings.extend(expander.warnings);
-                primitives
+        let file = read_octree(path)?;
+        let options = match file.surfaces {
+            // Ours says where it was made; Radiance's is read where the program runs, or else where the octree lies.
+            Some(_) => file.options(self.options),
+            None => {
+                let mut options = self.options.clone();
+                options.search_path.insert(0, folder_of(path));
+                options
             }
         };
+        let mut expander = Expander::new(&options);
+        let mut primitives = Vec::new();
+        for source in &file.sources {
+            primitives.extend(load_source(&mut expander, &found(source, &options, user)?, &options)?);
+        }
+        self.scene.warnings.extend(expander.warnings);
         let primitives = Arc::new(primitives);
         self.compounds.octrees.insert(path.to_path_buf(), primitives.clone());
         Ok(primitives)
@@ -223,6 +217,19 @@ impl Interpreter<'_> {
 
 fn at(primitive: &Primitive, message: String) -> Error {
     Error::input(primitive.location.clone(), message)
+}
+
+/// A file of an octree, found; its name may be relative.
+fn found(source: &Source, options: &LoadOptions, user: &Primitive) -> Result<Source> {
+    match source {
+        Source::File(path) if !path.to_string_lossy().starts_with('!') => {
+            let name = path.to_string_lossy();
+            let path = options.find(&name, &options.base(), &user.directory, &user.location)?;
+            // What is found without a folder is in the current one.
+            Ok(Source::File(std::path::absolute(&path).unwrap_or(path)))
+        }
+        other => Ok(other.clone()),
+    }
 }
 
 /// The vertices in world axes; no triangles yet.

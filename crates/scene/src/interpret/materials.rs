@@ -38,6 +38,9 @@ impl Interpreter<'_> {
             "spotlight" => spotlight(primitive)?,
             "BSDF" | "aBSDF" => Material::Bsdf(bsdf::material(self, primitive)?),
             _ => {
+                if let Some(material) = self.function_material(primitive)? {
+                    return Ok(ModifierKind::Material(material));
+                }
                 let modulation = self.modulation(primitive)?;
                 return modulation.ok_or_else(|| unsupported(primitive).into());
             }
@@ -61,6 +64,11 @@ impl Interpreter<'_> {
         Ok(Material::Illum { radiance: triple(&primitive.reals, 0), alternate })
     }
 
+    /// A modifier that a mixture names.
+    pub(super) fn mixed(&self, primitive: &Primitive, name: &str) -> Result<Option<ModifierId>, Unusable> {
+        self.named(primitive, name, "the modifier to be mixed,")
+    }
+
     /// `void` among the names is the face only: it clips nothing.
     fn antimatter(&self, primitive: &Primitive) -> Result<Material, Unusable> {
         if primitive.strings.is_empty() || !primitive.reals.is_empty() {
@@ -72,11 +80,6 @@ impl Interpreter<'_> {
         let named = |name: &String| self.named(primitive, name, "the modifier that is to be clipped,");
         let modifiers = primitive.strings.iter().map(named).collect::<Result<Vec<_>, _>>()?;
         Ok(Material::Antimatter { face: modifiers[0], clipped: modifiers.into_iter().flatten().collect() })
-    }
-
-    /// A modifier that a mixture names.
-    pub(super) fn mixed(&self, primitive: &Primitive, name: &str) -> Result<Option<ModifierId>, Unusable> {
-        self.named(primitive, name, "the modifier to be mixed,")
     }
 
     fn alternate(&self, primitive: &Primitive, name: &str) -> Result<Option<ModifierId>, Unusable> {

@@ -3,6 +3,7 @@
 mod args;
 mod bsdf;
 mod compounds;
+mod functions;
 mod materials;
 mod orientation;
 mod patterns;
@@ -16,7 +17,10 @@ use crate::{
     raw::{Class, Primitive},
 };
 use compounds::Compounds;
-use std::{collections::HashMap, path::PathBuf};
+use std::{
+    collections::{HashMap, HashSet},
+    path::PathBuf,
+};
 use sunpeak_core::{Error, Location, Result};
 
 /// The modifier that is none.
@@ -32,6 +36,8 @@ pub struct Interpreter<'o> {
     names: HashMap<String, Named>,
     problems: Vec<Problem>,
     compounds: Compounds,
+    /// Those of the problems that were told as mistakes.
+    told: HashSet<usize>,
     functions: FunctionFiles,
     /// What each of the scene's modifiers is made of.
     makings: Vec<Making>,
@@ -78,6 +84,7 @@ impl<'o> Interpreter<'o> {
             names: HashMap::new(),
             problems: Vec::new(),
             compounds: Compounds::default(),
+            told: HashSet::new(),
             functions: FunctionFiles::new(),
             makings: Vec::new(),
         }
@@ -93,9 +100,35 @@ impl<'o> Interpreter<'o> {
         }
     }
 
+    /// Take one primitive in, and tell the mistake that it makes; what hangs on a mistake told before is left out without a word.
+    pub fn check(&mut self, primitive: Primitive) -> Option<Error> {
+        let modifier = primitive.modifier.clone();
+        let name = primitive.kind.is_modifier().then(|| primitive.name.clone());
+        match (self.names.get(&*modifier), &name) {
+            (Some(Named::Problem(problem)), None) if !self.told.insert(*problem) => return None,
+            _ => {}
+        }
+        let mistake = self.add(primitive).err()?;
+        if !self.names.contains_key(&*modifier) && ![VOID, INHERIT].contains(&&*modifier) {
+            self.tell(modifier.to_string());
+        }
+        if let Some(name) = name {
+            self.tell(name);
+        }
+        Some(mistake)
+    }
+
+    /// From here on a name stands for a mistake that was told.
+    fn tell(&mut self, name: String) {
+        self.told.insert(self.problems.len());
+        self.names.insert(name, Named::Problem(self.problems.len()));
+        self.problems.push(Problem { location: Location::default(), message: String::new() });
+    }
+
     /// The scene. Modifiers that cannot be used, and that nothing uses, are warnings in it.
     pub fn finish(mut self) -> Scene {
-        let unused = self.problems.iter().map(|p| format!("{}: {} (nothing uses it)", p.location, p.message));
+        let untold = self.problems.iter().enumerate().filter(|(index, _)| !self.told.contains(index));
+        let unused = untold.map(|(_, p)| format!("{}: {} (nothing uses it)", p.location, p.message));
         self.scene.warnings.extend(unused);
         self.scene
     }
