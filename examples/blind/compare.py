@@ -1,9 +1,10 @@
 """The office behind a venetian blind: its slats alone, its BSDF alone, and the BSDF as a proxy for the slats.
 
-usage: python compare.py        (writes blind.xml, sky.rad and three pictures beside itself)
+usage: python compare.py        (writes blind.xml, flat.rad, sky.rad and three pictures beside itself)
 
-With the slats alone, scattered light has to find its way between them. With the BSDF alone one sees a veil where the slats are.
-With the proxy one sees slats, and they throw their shadows, but what they scatter into the room comes from the table.
+With the slats alone, scattered light has to find its way between them. With the BSDF alone one sees a veil where
+the slats are. With the proxy one sees slats, and they throw their shadows, but what they scatter into the room
+comes from the table.
 """
 
 from pathlib import Path

@@ -11,8 +11,8 @@ from sunpeak.files import write_text
 class Blind:
     """Flat slats without thickness, horizontal if the BSDF's up vector is vertical; both sides alike.
 
-    Light that travels at the profile angle O is blocked over `width` |cos(tilt) tan(O) - sin(tilt)| of each spacing. What meets
-    the slats is scattered: one diffuse share comes through, another (0.3) back.
+    Light that travels at the profile angle O is blocked over `width` |cos(tilt) tan(O) - sin(tilt)| of each spacing.
+    What meets the slats is scattered: one diffuse share comes through, another (0.3) back.
     """
 
     width: float = 1.0
