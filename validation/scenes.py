@@ -191,7 +191,14 @@ class Comparison:
         os.environ["RAYPATH"] = self.path
         # Generators that are not done inside are Radiance's own: the same geometry for both.
         os.environ["PATH"] = f"{self.radiance.programs}:{os.environ['PATH']}"
-        scene = sp.Scene.load(self.files, allow_commands=True)
+        try:
+            scene = sp.Scene.load(self.files, allow_commands=True)
+        except sp.InputError as error:
+            if "not done inside" not in str(error):
+                raise
+            expanded = self.octree.with_suffix(".expanded.rad")
+            expanded.write_bytes(b"".join(self.program("xform", "-e", file) for file in self.files))
+            scene = sp.Scene.load([expanded])
         view = sp.View.parse(self.view())
         return sp.render(scene, view, size=(SIZE, SIZE), samples=samples, seed=seed, max_bounces=self.case.bounces)
 
