@@ -18,7 +18,7 @@ class Blind:
     width: float = 1.0
     """Width of the slats over their spacing."""
     tilt_deg: float = 0.0
-    """Tilt of the slats from the normal; up at the back if positive."""
+    """Tilt of the slats from the normal; up at the front if positive."""
     scattered: float = 0.2
     """Share of the light on the slats that comes out at the other side, diffuse [-]."""
 

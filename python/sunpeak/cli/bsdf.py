@@ -83,7 +83,7 @@ def blind(
         str, typer.Option(help="klems, klems-half, klems-quarter, or t4-256, t4-4096 … by number of cells.")
     ] = "klems",
     width: Annotated[float, typer.Option(help="Width of the slats over their spacing.")] = Blind.width,
-    tilt: Annotated[float, typer.Option(help="Tilt from the normal, up at the back, degrees.")] = Blind.tilt_deg,
+    tilt: Annotated[float, typer.Option(help="Tilt from the normal, up at the front, degrees.")] = Blind.tilt_deg,
     scattered: Annotated[float, typer.Option(help="Share that the slats scatter through.")] = Blind.scattered,
 ) -> None:
     """Make a venetian blind of flat slats from formulas.
