@@ -11,7 +11,7 @@ from pathlib import Path
 from table import heading, row
 
 import sunpeak as sp
-from sunpeak.demo.study import write_scene, write_shade
+from sunpeak.demo import DEMO_ROOM
 
 BASIS = "t3-4096"
 SIZE = (256, 256)
@@ -29,8 +29,8 @@ def main() -> None:
     """Compile the room twice and render it in turn."""
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
-        files = write_scene(folder)
-        scene = sp.Scene.load([*files, write_shade(folder, BASIS)])
+        files = DEMO_ROOM.write(folder)
+        scene = sp.Scene.load([*files, DEMO_ROOM.hang(folder, BASIS)])
         eye = sp.View.load(folder / "eye.vf")
         split, off = (sp.World.compile(scene, peak) for peak in ("split", "off"))
         heading(f"demo's room, {BASIS}", "samples/s", "without peak extraction")

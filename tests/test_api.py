@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import sunpeak as sp
-from sunpeak.demo.fabric import FABRIC, write_fabric
 from sunpeak.files import whole_file
+from sunpeak.rooms import FABRIC, write_fabric
 
 LUMINANCE = 179 * np.array([0.265, 0.670, 0.065])
 

@@ -7,7 +7,8 @@ import pytest
 
 from conftest import CommandLine
 from sunpeak import Picture
-from sunpeak.demo import expectation, room
+from sunpeak.demo import DEMO_ROOM
+from sunpeak.rooms import expectation
 
 TREES = ("t3-1024", "t3-4096", "t3-16384")
 BASES = ("klems", *TREES)
@@ -33,7 +34,7 @@ def test_table_has_a_row_for_each_basis_and_rule(rows) -> None:
 
 
 def test_the_sun_stands_well_inside_the_cut_off() -> None:
-    assert expectation(room.sky()).incidence_deg <= 0.7 * 68.0
+    assert expectation(DEMO_ROOM).incidence_deg <= 0.7 * 68.0
 
 
 @pytest.mark.parametrize(("basis", "tolerance"), [("klems", 0.06), *((tree, 0.03) for tree in TREES)])
@@ -57,7 +58,7 @@ def test_with_peak_extraction_dgp_does_not_depend_on_resolution(rows) -> None:
 
 @pytest.mark.parametrize(("basis", "tolerance"), [("klems", 0.06), *((tree, 0.02) for tree in TREES)])
 def test_the_sun_is_as_bright_as_the_closed_form_says(basis: str, tolerance: float, rows) -> None:
-    expected = expectation(room.sky()).luminance_cd_m2
+    expected = expectation(DEMO_ROOM).luminance_cd_m2
     assert rows[basis, "split"]["max_luminance_cd_m2"] == pytest.approx(expected, rel=tolerance)
 
 
@@ -83,6 +84,6 @@ def test_the_folder_can_be_rendered_again(folder: Path, sunpeak: CommandLine) ->
         folder=folder,
     )  # fmt: skip
     report = json.loads(sunpeak("glare", out, "--json").out)
-    expected = expectation(room.sky()).luminance_cd_m2
+    expected = expectation(DEMO_ROOM).luminance_cd_m2
     assert report["sources"][0]["exact"]
     assert report["sources"][0]["luminance_cd_m2"] == pytest.approx(expected, rel=0.02)

@@ -12,7 +12,7 @@ from sunpeak import _core
 from sunpeak.studies.peaks import FABRIC_BASES, Plan, Row, blurred, decoy, measure, scatterer
 from sunpeak.studies.peaks_report import markdown
 from sunpeak.studies.products import EXACT, Product, Seen, decoys, fabrics, panel, see_through
-from sunpeak.studies.radiance import through_by_radiance
+from sunpeak.studies.radiance_through import through_by_radiance
 
 LIMITS = {
     "t3-16384": 0.0005,

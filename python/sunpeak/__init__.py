@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from sunpeak.bsdf_verdict import Verdict
     from sunpeak.comfort import glare
     from sunpeak.expressions import evaluate
-    from sunpeak.fabrics import Fabric
+    from sunpeak.fabrics import Fabric, RollerBlind
     from sunpeak.glare_report import GlareReport, GlareSource, ZoneLuminances
     from sunpeak.glare_rules import GlareRules, RulesName, Task
     from sunpeak.pictures import ExactSource, Picture
@@ -38,6 +38,7 @@ __all__ = [
     "Picture",
     "Place",
     "Rays",
+    "RollerBlind",
     "RulesName",
     "Samples",
     "Scene",
@@ -68,6 +69,7 @@ _HOMES = {
     "glare": "comfort",
     "evaluate": "expressions",
     "Fabric": "fabrics",
+    "RollerBlind": "fabrics",
     "GlareReport": "glare_report",
     "GlareSource": "glare_report",
     "ZoneLuminances": "glare_report",

@@ -162,6 +162,12 @@ def fabric_xml(
     lobe_sigma: float,
     reflectance: float,
 ) -> str: ...
+def roller_blind_xml(
+    basis: str, tau_nn: float, tau_nh: float, rho_front: float, rho_back: float, cutoff_deg: float | None
+) -> str: ...
+def roller_blind_transmittance(
+    tau_nn: float, tau_nh: float, rho_front: float, rho_back: float, cutoff_deg: float | None, incidence_rad: float
+) -> tuple[float, float, float]: ...
 
 class World:
     @staticmethod

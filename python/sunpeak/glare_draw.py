@@ -2,7 +2,7 @@
 
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Unpack
 
 import numpy as np
 import numpy.typing as npt
@@ -10,7 +10,7 @@ import numpy.typing as npt
 from sunpeak import _core
 from sunpeak.files import whole_file
 from sunpeak.glare_report import GlareReport, GlareSource
-from sunpeak.glare_rules import RULES, GlareRules, Task, chosen_options
+from sunpeak.glare_rules import RULES, GlareRules, Stated, Task, chosen_options
 from sunpeak.images import SCALE
 from sunpeak.pictures import Picture
 from sunpeak.scattering import Floats
@@ -52,7 +52,7 @@ class Panel(NamedTuple):
     title: str
 
 
-def panel(picture: Picture, report: GlareReport, title: str, rules: GlareRules, **stated: Any) -> Panel:
+def panel(picture: Picture, report: GlareReport, title: str, rules: GlareRules, **stated: Unpack[Stated]) -> Panel:
     """Gather what is drawn; `rules` and what is `stated` are those that the report was made with."""
     numbers = _core.glare_sources(picture._core, chosen_options(rules, **stated))
     return Panel(picture, report, numbers, title)

@@ -5,7 +5,7 @@ An older number can be understood by asking for its rules again.
 
 import math
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple, Self
+from typing import Any, Literal, NamedTuple, Self, TypedDict, Unpack
 
 import numpy as np
 
@@ -89,54 +89,94 @@ and vertical too. `wienold-2006`: the publication of DGP: 5 times the mean of th
 Einhorn's position index below the line of sight."""
 
 
-def threshold_options(
-    rules: GlareRules,
-    task: Task | None,
-    cd_m2: float | None,
-    times_mean: float | None,
-    times_task: float | None,
-) -> dict[str, Any]:
+class Stated(TypedDict, total=False):
+    """What can be stated apart from the rules; what is not there, or `None`, is as the rules have it."""
+
+    threshold_cd_m2: float | None
+    """A pixel above this may glare (2000 cd/m² unless told otherwise)."""
+    threshold_times_mean: float | None
+    """Or above so many times the mean luminance of the field of view."""
+    threshold_times_task: tuple[float, Task] | None
+    """Or above so many times the mean luminance of a task zone."""
+    search_angle_rad: float | None
+    """Glaring pixels within half of it of each other (0.2 rad) are one source."""
+    peak_cd_m2: float | Literal["rules"] | None
+    """Pixels above this (50 000 cd/m²) are sources of their own; `None`: they stay in the larger one."""
+    below_sight: BelowSight | None
+    """Position index below the line of sight."""
+    dgp_fit: DgpFit | None
+    """Coefficients of DGP."""
+    task: Task | None
+    """Zone for `report.zones`."""
+    least_solid_angle_sr: float | None
+    """Smaller sources count as if they had it, with as much less luminance [3]."""
+    ev_lux: float | None
+    """Vertical illuminance, instead of taking it from the picture (with a simplified picture that is the *enhanced
+    simplified* DGP, `report.edgps`)."""
+    low_light: bool
+    """Whether `dgp` is multiplied by the factor for dim scenes [2]."""
+    source_distance_m: float | None
+    """How far away sources are, for UGR of small ones."""
+    tolerance_through: float
+    """Half-width of a 95 % interval of the transmittance or openness of what suns are seen through, relative."""
+    tolerance_sky: float
+    """The same of sky and sun, relative."""
+    tolerance_position_deg: float
+    """The same of where sources stand in the field of view."""
+    relative_error: float
+    """Standard error that Ev and the sources share, for a picture that does not know its own."""
+
+
+OF_RULES = ("search_angle_rad", "below_sight", "dgp_fit")
+"""What is stated or as the rules have it."""
+
+PASSED_ON = (
+    "least_solid_angle_sr",
+    "ev_lux",
+    "low_light",
+    "source_distance_m",
+    "tolerance_through",
+    "tolerance_sky",
+    "tolerance_position_deg",
+    "relative_error",
+)
+"""What the rules say nothing about."""
+
+
+def chosen_options(rules: GlareRules, **stated: Unpack[Stated]) -> dict[str, Any]:
+    """All options for the compiled core: what is stated, otherwise what the rules say."""
+    unknown = stated.keys() - Stated.__annotations__.keys()
+    if unknown:
+        raise TypeError(f"glare: unknown {', '.join(sorted(unknown))}; expected {', '.join(Stated.__annotations__)}")
+    known: dict[str, Any] = {name: value for name, value in stated.items() if value is not None}
+    task = known.get("task") or known.get("threshold_times_task", (None, None))[1]
+    peak = stated.get("peak_cd_m2", "rules")
+    return {
+        **threshold_options(rules, task, known),
+        "task": None if task is None else (task.direction, math.radians(task.opening_deg)),
+        "peak_cd_m2": rules.peak_cd_m2 if peak == "rules" else peak,
+        "up_as_given": rules.up_as_given,
+        "centre": rules.centre,
+        **{name: known.get(name, getattr(rules, name)) for name in OF_RULES},
+        **{name: known[name] for name in PASSED_ON if name in known},
+    }
+
+
+def threshold_options(rules: GlareRules, task: Task | None, known: dict[str, Any]) -> dict[str, Any]:
     """The threshold for the compiled core: what is stated, otherwise that of the rules."""
-    if cd_m2 is not None:
-        return {"threshold": cd_m2, "threshold_kind": "luminance"}
-    if times_mean is not None:
-        return {"threshold": times_mean, "threshold_kind": "mean"}
-    if times_task is not None:
-        return {"threshold": times_task, "threshold_kind": "task"}
-    if rules.threshold_times_mean is not None:
-        return {"threshold": rules.threshold_times_mean, "threshold_kind": "mean" if task is None else "task"}
-    return {"threshold": rules.threshold_cd_m2, "threshold_kind": "luminance"}
-
-
-def chosen_options(
-    rules: GlareRules,
-    *,
-    threshold_cd_m2: float | None = None,
-    threshold_times_mean: float | None = None,
-    threshold_times_task: tuple[float, Task] | None = None,
-    search_angle_rad: float | None = None,
-    peak_cd_m2: float | Literal["rules"] | None = "rules",
-    below_sight: BelowSight | None = None,
-    dgp_fit: DgpFit | None = None,
-    task: Task | None = None,
-) -> dict[str, Any]:
-    """How sources are found, for the compiled core: what is stated, otherwise what the rules say."""
-    given = [value for value in (threshold_cd_m2, threshold_times_mean, threshold_times_task) if value is not None]
+    given: list[tuple[float, str]] = []
+    if "threshold_cd_m2" in known:
+        given.append((known["threshold_cd_m2"], "luminance"))
+    if "threshold_times_mean" in known:
+        given.append((known["threshold_times_mean"], "mean"))
+    if "threshold_times_task" in known:
+        given.append((known["threshold_times_task"][0], "task"))
     if len(given) > 1:
         raise _core.InputError("threshold: several kinds are given; expected one")
-    times_task = None
-    if threshold_times_task is not None:
-        times_task, task = threshold_times_task[0], task or threshold_times_task[1]
-    return {
-        **threshold_options(rules, task, threshold_cd_m2, threshold_times_mean, times_task),
-        "task": None if task is None else (task.direction, math.radians(task.opening_deg)),
-        "search_angle_rad": rules.search_angle_rad if search_angle_rad is None else search_angle_rad,
-        "peak_cd_m2": rules.peak_cd_m2 if peak_cd_m2 == "rules" else peak_cd_m2,
-        "below_sight": below_sight or rules.below_sight,
-        "up_as_given": rules.up_as_given,
-        "dgp_fit": dgp_fit or rules.dgp_fit,
-        "centre": rules.centre,
-    }
+    if not given and rules.threshold_times_mean is not None:
+        given.append((rules.threshold_times_mean, "mean" if task is None else "task"))
+    value, kind = given[0] if given else (rules.threshold_cd_m2, "luminance")
+    return {"threshold": value, "threshold_kind": kind}
 
 
 def rules_named(name: str) -> GlareRules:

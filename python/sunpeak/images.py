@@ -65,6 +65,14 @@ def encode_srgb(linear: npt.NDArray[np.floating[Any]]) -> Image:
     return image
 
 
+def seen(shape: tuple[int, ...]) -> npt.NDArray[np.bool_]:
+    """Pixels (h, w) of a fisheye of 180 degrees that are before the eye; an angular one has corners that look back."""
+    height, width = shape[:2]
+    y, x = np.mgrid[0:height, 0:width]
+    inside: npt.NDArray[np.bool_] = np.hypot((x + 0.5) / width - 0.5, (y + 0.5) / height - 0.5) <= 0.5
+    return inside
+
+
 def false_colour(
     luminance: Luminance, limits_cd_m2: tuple[float, float], seen: npt.NDArray[np.bool_] | None = None
 ) -> Image:

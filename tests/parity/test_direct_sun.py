@@ -7,8 +7,8 @@ import pytest
 
 import sunpeak as sp
 from conftest import Radiance
-from sunpeak.demo.expectation import pane
-from sunpeak.demo.fabric import FABRIC, write_fabric
+from sunpeak.rooms import FABRIC, write_fabric
+from sunpeak.rooms.closed_form import pane
 
 SUN_CD_M2_BY_179 = 5e6
 SUNS = [(35.0, 183.0), (20.0, 200.0), (50.0, 165.0), (10.0, 190.0), (42.0, 215.0)]

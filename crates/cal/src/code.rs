@@ -94,6 +94,11 @@ impl Program {
         }
     }
 
+    /// `A1`, `A2`, …
+    pub fn arguments(&self) -> &[f64] {
+        &self.code.arguments
+    }
+
     /// Number of expressions.
     pub fn len(&self) -> usize {
         self.roots.len()

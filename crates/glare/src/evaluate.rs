@@ -1,7 +1,7 @@
 //! From a picture to a report.
 
 use crate::BelowSight;
-use crate::blocks::sampling_error;
+use crate::blocks::{Limits, sampling_error};
 use crate::checks;
 use crate::class::{ClassVerdict, GlareClass};
 use crate::detect::{self, Head};
@@ -39,8 +39,9 @@ pub fn evaluate_with_pixels(
     let pixels: Vec<&[FieldPixel]> = search.found.iter().map(|(_, pixels)| &pixels[..]).collect();
     let seen = seen(search.sources(), &survey, &suns, options);
 
-    let error = sampling_error(&field, search.threshold_cd_m2, &pixels)?;
-    let sampling = uncertainty::sampling(&seen, error.as_ref(), search.threshold_cd_m2, options);
+    let limits = Limits { threshold_cd_m2: search.threshold_cd_m2, peak_cd_m2: options.peak_cd_m2 };
+    let error = sampling_error(&field, &limits, &pixels)?;
+    let sampling = uncertainty::sampling(&seen, error.as_ref(), options);
     let input = uncertainty::input(&seen, &Head { field: &field, options }, options);
     let terms = options.dgp_fit.terms(seen.ev_lux, seen.contrast_sum());
     let dgp = terms.dgp() * options.low_light_factor(seen.ev_lux);

@@ -3,7 +3,7 @@
 //! A scene is background, sources and common scale. Each of them is moved by its 95 % half-width to both sides; what that does to a
 //! rating is added up in squares, upwards and downwards apart.
 
-use crate::blocks::SamplingError;
+use crate::blocks::{Edge, SamplingError};
 use crate::detect::Head;
 use crate::metrics::{Metrics, Seen};
 use crate::options::{GlareOptions, Tolerances};
@@ -24,7 +24,6 @@ type Move = [Seen; 2];
 pub(crate) fn sampling(
     seen: &Seen,
     error: Option<&SamplingError>,
-    threshold: f64,
     options: &GlareOptions,
 ) -> Option<Intervals> {
     let mut moves = Vec::new();
@@ -33,8 +32,9 @@ pub(crate) fn sampling(
         for (i, &flux) in error.source_flux.iter().enumerate().filter(|(_, flux)| **flux > 0.0) {
             moves.push([-1.0, 1.0].map(|side| with_source(seen, i, side * CONFIDENCE * flux)));
         }
-        for (i, &size) in error.source_solid_angle_sr.iter().enumerate().filter(|(_, size)| **size > 0.0) {
-            moves.push([-1.0, 1.0].map(|side| with_edge(seen, i, side * CONFIDENCE * size, threshold)));
+        for edge in &error.edges {
+            moves
+                .push([-1.0, 1.0].map(|side| with_edge(seen, edge, side * CONFIDENCE * edge.solid_angle_sr)));
         }
     }
     if options.relative_error > 0.0 {
@@ -113,18 +113,29 @@ fn with_source(seen: &Seen, source: usize, more_flux: f64) -> Seen {
     })
 }
 
-/// A source has so much more solid angle of pixels at the threshold, taken from the background.
-fn with_edge(seen: &Seen, source: usize, more_sr: f64, threshold: f64) -> Seen {
+/// A source has so much more solid angle of pixels at its threshold, taken from the background or from the source around it.
+fn with_edge(seen: &Seen, edge: &Edge, more_sr: f64) -> Seen {
+    /// No source loses more than this share of its solid angle.
+    const MOST: f64 = 0.9;
     let mut moved = seen.clone();
-    let changed = &mut moved.sources[source];
-    let more = more_sr.max(-0.9 * changed.solid_angle_sr);
-    let illuminance = more * threshold * changed.angle_to_sight_rad.cos();
-    let flux = changed.luminance_cd_m2 * changed.solid_angle_sr + more * threshold;
-    changed.solid_angle_sr += more;
-    changed.luminance_cd_m2 = flux / changed.solid_angle_sr;
-    changed.illuminance_lux += illuminance;
-    moved.ev_sources_lux += illuminance;
+    let least = -MOST * seen.sources[edge.source].solid_angle_sr;
+    let most = edge.otherwise.map_or(f64::INFINITY, |other| MOST * seen.sources[other].solid_angle_sr);
+    let more = more_sr.max(least).min(most);
+    let gained = with_pixels(&mut moved.sources[edge.source], more, edge.threshold_cd_m2);
+    let lost =
+        edge.otherwise.map(|other| with_pixels(&mut moved.sources[other], -more, edge.threshold_cd_m2));
+    moved.ev_sources_lux += gained + lost.unwrap_or(0.0);
     moved
+}
+
+/// Give a source so much more solid angle of a luminance; how much more illuminance that is [lx].
+fn with_pixels(source: &mut Source, more_sr: f64, luminance_cd_m2: f64) -> f64 {
+    let flux = (source.luminance_cd_m2 * source.solid_angle_sr + more_sr * luminance_cd_m2).max(0.0);
+    let illuminance = more_sr * luminance_cd_m2 * source.angle_to_sight_rad.cos();
+    source.solid_angle_sr += more_sr;
+    source.luminance_cd_m2 = flux / source.solid_angle_sr;
+    source.illuminance_lux += illuminance;
+    illuminance
 }
 
 /// Sources that are chosen are so many times as bright; the background too if all are.

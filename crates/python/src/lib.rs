@@ -32,7 +32,7 @@ mod _core {
     #[pymodule_export]
     use super::expressions::evaluate;
     #[pymodule_export]
-    use super::fabric::fabric_xml;
+    use super::fabric::{fabric_xml, roller_blind_transmittance, roller_blind_xml};
     #[pymodule_export]
     use super::glare::{glare, glare_sources, position_indices};
     #[pymodule_export]

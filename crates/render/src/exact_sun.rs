@@ -8,7 +8,7 @@
 //! passes and flat mirrors are followed, both ways at every pane, so reflections between parallel panes count as well.
 
 use crate::World;
-use crate::light::is_in_cone;
+use crate::light::{at_infinity, is_in_cone};
 use crate::material::{Arrival, Inside, Material};
 use crate::shapes::Ray;
 use crate::world::{Facing, Seen};
@@ -139,6 +139,7 @@ fn mirrors(world: &World, id: crate::material::MaterialId) -> bool {
         Material::Mirror(m) => m.alternate.flatten().is_none_or(|a| mirrors(world, a)),
         Material::Emitter(e) => matches!(e.kind, Illum { alternate: Some(a) } if mirrors(world, a)),
         Material::Ward(m) => m.is_polished(),
+        Material::Varying(v) => v.materials().into_iter().any(|id| mirrors(world, id)),
         _ => false,
     }
 }
@@ -201,12 +202,16 @@ impl Chains<'_> {
                     && self.world.distant.seen(chain.ray.direction) == Some(self.disc.source);
                 if is_sun {
                     let emitter = &self.world.distant.get(self.disc.source).emitter;
-                    sum += chain.share * emitter.radiance(chain.ray.direction);
+                    sum += chain.share * emitter.radiance(&at_infinity(chain.ray.direction));
                 }
                 continue;
             };
             let object = self.world.object(&hit);
-            let (seen, arrival) = self.world.meet(&hit, &chain.ray, true, &mut chain.inside);
+            // Mixtures: the points of the disc are seen by many chains.
+            let place = chain.ray.at(hit.t);
+            let mut choose = || scattered(place);
+            let inside = &mut chain.inside;
+            let (seen, arrival) = self.world.meet(&hit, &chain.ray, true, inside, [0.0; 2], &mut choose);
             match seen {
                 Seen::Void => open.extend(chain.straight(&arrival, hit.t, Rgb::ONE)),
                 Seen::Emitter(_) => {}
@@ -221,6 +226,11 @@ impl Chains<'_> {
         }
         sum
     }
+}
+
+/// A number in [0, 1) that looks random, of a place.
+fn scattered(point: Vec3) -> f64 {
+    (point.dot(Vec3::new(12.9898, 78.233, 37.719)) * 43_758.545_3).rem_euclid(1.0)
 }
 
 /// A chain that is being followed.

@@ -91,8 +91,10 @@ impl Integrator<'_> {
                 return sum + path.throughput * self.light_from_infinity(&path);
             };
             let object = self.world.object(&hit);
-            let view = path.is_view();
-            let (seen, arrival) = self.world.meet(&hit, &path.ray, view, &mut path.inside);
+            let (view, way) = (path.is_view(), path.way());
+            let mut choose = || sampler.next_1d();
+            let inside = &mut path.inside;
+            let (seen, arrival) = self.world.meet(&hit, &path.ray, view, inside, way, &mut choose);
             path.travel(hit.t);
             match seen {
                 Seen::Void => path.go_straight(arrival.point, Rgb::ONE),
@@ -128,8 +130,11 @@ impl Integrator<'_> {
         } else if choice < straight + mirrored {
             path.mirror(&met.arrival, met.scattering.mirrored * (whole / mirrored), met.is_flat);
         } else if choice < straight + mirrored + refracted {
-            let Some((direction, share)) = met.scattering.refracted else { return false };
-            path.refract(&met.arrival, direction, share * (whole / refracted), met.material);
+            let [first, second] = met.scattering.refracted;
+            let of_first = first.map_or(0.0, |(_, share)| luminance(share));
+            let is_first = choice - straight - mirrored < of_first;
+            let Some((direction, share)) = (if is_first { first } else { second }) else { return false };
+            path.refract(&met.arrival, direction, share * (whole / luminance(share)), met.material);
         } else {
             return self.scatter(path, met, sampler);
         }
@@ -139,6 +144,9 @@ impl Integrator<'_> {
     /// Go on in a direction drawn from the smooth lobes, or where the guide points.
     fn scatter(&self, path: &mut Path, met: &Met, sampler: &mut Sampler) -> bool {
         let Some(sample) = self.draw(met, sampler) else { return false };
+        if !met.arrival.agrees_on(sample.direction) {
+            return false;
+        }
         let share = met.smooth_share();
         let mut weight = sample.weight.total();
         if weight == Rgb::ZERO {
@@ -201,7 +209,7 @@ struct Met<'w> {
 impl<'w> Met<'w> {
     fn new(object: &Object, material: &'w Material, arrival: Arrival, view: bool) -> Self {
         let scattering = material.scatter(&arrival, view);
-        let refracted = scattering.refracted.map_or(0.0, |(_, share)| luminance(share));
+        let refracted = scattering.refracted.iter().flatten().map(|(_, share)| luminance(*share)).sum();
         let [straight, mirrored] = [scattering.straight, scattering.mirrored].map(luminance);
         let shares = [straight, mirrored, refracted, scattering.smooth.albedo()];
         let is_flat = matches!(object.facing, Facing::Flat(_));

@@ -3,7 +3,7 @@
 use crate::World;
 use crate::accel::Hit;
 use crate::light::LightSample;
-use crate::material::{Alternate, Arrival, Dielectric, EmitterKind, Inside, Material};
+use crate::material::{Alternate, Arrival, Dielectric, EmitterKind, Inside, Material, Varying};
 use crate::shapes::{COINCIDENT, Ray};
 use crate::world::Seen;
 use sunpeak_bsdf::PeakRule;
@@ -187,12 +187,29 @@ impl World {
                 None => Pass::Straight(Rgb::ZERO, false),
             },
             Material::Dielectric(solid) => Pass::Refracted(solid),
+            Material::Varying(varying) => self.pass_varying(varying, arrival, target),
             Material::Table(table) if table.is_proxy() => {
                 Pass::Straight(Rgb::ONE, table.rule == PeakRule::Split)
             }
             Material::Table(table) => Pass::Straight(table.straight(arrival, target.is_direct), true),
             material => Pass::Straight(material.straight(arrival, target.is_direct), false),
         }
+    }
+
+    /// The mean of what a mixture's materials let through straight.
+    fn pass_varying(&self, varying: &Varying, arrival: &Arrival, target: &Target) -> Pass<'_> {
+        let (mut sum, mut only_by_shadow_rays) = (Rgb::ZERO, false);
+        varying.each(&arrival.ray_state(), &mut |share, id, modulation| {
+            let pass = match id {
+                None => Pass::Straight(Rgb::ONE, false),
+                Some(id) => self.pass_material(self.material(id), &arrival.modulated(modulation), target),
+            };
+            if let Pass::Straight(passed, only) = pass {
+                sum += passed * share;
+                only_by_shadow_rays |= only;
+            }
+        });
+        Pass::Straight(sum, only_by_shadow_rays)
     }
 
     fn pass_alternate(&self, alternate: Alternate, arrival: &Arrival, target: &Target) -> Pass<'_> {

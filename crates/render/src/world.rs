@@ -6,12 +6,17 @@ use crate::WorldOptions;
 use crate::accel::{Accel, Hit};
 use crate::guide::Guide;
 use crate::light::{DistantSources, Lamps};
-use crate::material::{Air, Alternate, Arrival, Emitter, EmitterKind, Inside, Material, MaterialId};
+use crate::material::{
+    Air, Alternate, Arrival, Emitter, EmitterKind, Inside, Material, MaterialId, Prism, fault_of,
+};
 use crate::shapes::{COINCIDENT, Ray, SmoothMesh};
 use std::sync::atomic::{AtomicU64, Ordering};
 use sunpeak_bsdf::PeakRule;
 use sunpeak_core::{Result, Rgb, Vec3};
 use sunpeak_scene::Scene;
+
+/// Materials that show others in their place: so many in a row.
+const MAX_ALTERNATES: usize = 100;
 
 /// Surfaces in one hierarchy, materials and emitters. Immutable, shared by all threads.
 #[derive(Debug)]
@@ -25,6 +30,8 @@ pub struct World {
     pub(crate) lamps: Lamps,
     /// Objects that are planar mirrors.
     pub(crate) mirrors: Vec<u32>,
+    /// Objects that are prisms, and a point of each.
+    pub(crate) prisms: Vec<(u32, Vec3)>,
     pub(crate) rule: PeakRule,
     pub(crate) rays: AtomicU64,
     /// Where diffuse surfaces look for light, if there are shades.
@@ -112,17 +119,29 @@ impl World {
                 return Arrival::new(point, flat, ray.direction).smoothed(smooth);
             }
         };
-        Arrival::new(point, normal, ray.direction)
+        Arrival { distance: hit.t, travelled: hit.t, ..Arrival::new(point, normal, ray.direction) }
     }
 
-    /// What a path that is in these volumes meets; they change where it passes a boundary.
-    pub(crate) fn meet(&self, hit: &Hit, ray: &Ray, view: bool, inside: &mut Inside) -> (Seen<'_>, Arrival) {
-        let arrival = self.arrival(hit, ray);
+    /// What a path that is in these volumes meets; they change where it passes a boundary. `way` is how far the path has come before:
+    /// since it was last scattered, and since the camera [m]. `choose` gives random numbers in [0, 1), for mixtures.
+    pub(crate) fn meet(
+        &self,
+        hit: &Hit,
+        ray: &Ray,
+        view: bool,
+        inside: &mut Inside,
+        way: [f64; 2],
+        choose: &mut dyn FnMut() -> f64,
+    ) -> (Seen<'_>, Arrival) {
+        let mut arrival = self.arrival(hit, ray);
+        arrival.distance += way[0];
+        arrival.travelled += way[1];
         let object = self.object(hit);
-        match self.meet_volume(object, &arrival, inside) {
+        let (seen, mut arrival) = match self.meet_volume(object, &arrival, inside) {
             Some(met) => met,
-            None => (self.seen(object, &arrival, view), arrival),
-        }
+            None => (self.seen(object.material, &arrival, view), arrival),
+        };
+        (self.resolved(seen, &mut arrival, view, choose), arrival)
     }
 
     /// Boundaries of volumes and what they hide; `None` for all other surfaces.
@@ -194,8 +213,9 @@ impl World {
     }
 
     /// What a path sees. `view`: it comes from the camera and met only mirrors and clear panes.
-    pub(crate) fn seen(&self, object: &Object, arrival: &Arrival, view: bool) -> Seen<'_> {
-        match self.material(object.material) {
+    /// Patterns, textures and mixtures are still to be [`Self::resolved`].
+    fn seen(&self, id: MaterialId, arrival: &Arrival, view: bool) -> Seen<'_> {
+        match self.material(id) {
             Material::Emitter(emitter) => match emitter.kind {
                 EmitterKind::Illum { alternate } if view || !arrival.at_front() => self.alternate(alternate),
                 _ => Seen::Emitter(emitter),
@@ -204,19 +224,71 @@ impl World {
                 Some(alternate) if view || !arrival.at_front() || self.is_transparent(alternate) => {
                     self.alternate(alternate)
                 }
-                _ => Seen::Surface(self.material(object.material)),
+                _ => Seen::Surface(self.material(id)),
             },
             Material::Table(table) if table.is_passed(arrival, view) => Seen::Void,
             material => Seen::Surface(material),
         }
     }
 
-    /// Reflectance of an object that is a mirror.
-    pub(crate) fn mirror_reflectance(&self, object: u32) -> Rgb {
-        match self.material(self.objects[object as usize].material) {
+    /// Evaluate patterns, textures and mixtures; they change the arrival.
+    fn resolved<'w>(
+        &'w self,
+        mut seen: Seen<'w>,
+        arrival: &mut Arrival,
+        view: bool,
+        choose: &mut dyn FnMut() -> f64,
+    ) -> Seen<'w> {
+        // What varies may show an alternate that varies, but not for ever.
+        for _ in 0..MAX_ALTERNATES {
+            let Seen::Surface(Material::Varying(varying)) = seen else { return seen };
+            let (material, modulation) = varying.at(&arrival.ray_state(), choose);
+            *arrival = arrival.modulated(&modulation);
+            seen = material.map_or(Seen::Void, |id| self.seen(id, arrival, view));
+        }
+        Seen::Void
+    }
+
+    /// Reflectance of an object that is a mirror, where a ray meets it.
+    pub(crate) fn mirror_reflectance(&self, hit: &Hit, ray: &Ray) -> Rgb {
+        match self.material(self.object(hit).material) {
             Material::Mirror(mirror) => mirror.reflectance,
+            Material::Varying(varying) => {
+                let mut sum = Rgb::ZERO;
+                varying.each(&self.arrival(hit, ray).ray_state(), &mut |share, id, modulation| {
+                    if let Some(Material::Mirror(mirror)) = id.map(|id| self.material(id)) {
+                        sum += mirror.reflectance * modulation.tint * share;
+                    }
+                });
+                sum
+            }
             _ => Rgb::ZERO,
         }
+    }
+
+    /// The prism that an object is.
+    pub(crate) fn prism(&self, object: u32) -> Option<&Prism> {
+        let id = self.objects[object as usize].material;
+        let prism = |id: MaterialId| match self.material(id) {
+            Material::Prism(prism) => Some(prism),
+            _ => None,
+        };
+        match self.material(id) {
+            Material::Varying(varying) => varying.materials().into_iter().find_map(prism),
+            _ => prism(id),
+        }
+    }
+
+    /// What is wrong with an expression of the scene, if an evaluation has found that out.
+    pub(crate) fn check_expressions(&self) -> Result<()> {
+        let fault = |material: &Material| match material {
+            Material::Varying(varying) => varying.fault(),
+            Material::Emitter(emitter) => fault_of(&emitter.patterns),
+            Material::Function(function) => function.field.fault(),
+            Material::Prism(prism) => prism.field.fault(),
+            _ => None,
+        };
+        self.materials.iter().find_map(fault).map_or(Ok(()), Err)
     }
 
     fn alternate(&self, alternate: Alternate) -> Seen<'_> {

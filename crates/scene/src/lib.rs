@@ -16,6 +16,7 @@ mod check;
 mod command;
 mod compiled;
 mod disc_coverage;
+mod field;
 mod files;
 mod interpret;
 mod load;
@@ -27,11 +28,12 @@ mod view;
 pub use check::SceneCheck;
 pub use compiled::{OctreeFile, decode_octree};
 pub use disc_coverage::disc_coverage;
+pub use field::{DataArray, Field, RayState, Spectrum};
 pub use files::LoadOptions;
 pub use load::{Source, load_primitives};
 pub use picture::{BlockErrors, ExactSource, Picture};
 pub use scene::{
-    Anisotropy, BsdfMaterial, Material, Medium, Mesh, Modifier, ModifierId, ModifierKind, Pattern, Scene,
-    Shape, Surface, Ward,
+    Anisotropy, BsdfMaterial, FunctionMaterial, FunctionValue, Material, Medium, Mesh, Modifier, ModifierId,
+    ModifierKind, Pattern, Scene, Shape, Surface, Ward,
 };
 pub use view::{Camera, PixelRay, View, ViewKind, ViewRay};

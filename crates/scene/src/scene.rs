@@ -1,5 +1,6 @@
 //! What scene files say: surfaces and modifiers, in file order, with positions for error messages.
 
+use crate::field::{Field, RayState, Spectrum};
 use std::{path::PathBuf, sync::Arc};
 use sunpeak_core::{Location, Rgb, Vec3};
 use sunpeak_sky::SkyDistribution;
@@ -32,18 +33,43 @@ pub struct Modifier {
     pub location: Location,
 }
 
-/// A material or a pattern.
+/// What a modifier is.
 #[derive(Clone, Debug)]
 pub enum ModifierKind {
     /// Says how a surface reflects, transmits or emits.
     Material(Material),
-    /// Multiplies what the material above it says, by direction or place.
+    /// Multiplies what the material says, by direction or place.
     Pattern(Pattern),
+    /// Bends the normal: adds its three values, in its own frame, to the unit normal.
+    Texture(Arc<Field>),
+    /// One modifier or another: `fore` with the share that the weight's value says, 0 to 1, `back` with the rest.
+    Mixture {
+        /// Foreground; `None` is `void`.
+        fore: Option<ModifierId>,
+        /// Background; `None` is `void`.
+        back: Option<ModifierId>,
+        /// Share of the foreground.
+        weight: Arc<Field>,
+    },
 }
 
-/// Patterns that are understood.
+/// Patterns.
 #[derive(Clone, Debug)]
 pub enum Pattern {
+    /// The same everywhere: a spectrum, in three channels.
+    Uniform(Rgb),
+    /// One value of a field for all channels.
+    Bright(Arc<Field>),
+    /// Three values of a field.
+    Color(Arc<Field>),
+    /// A spectrum over place or direction, in three channels. The field's function is asked for each wavelength: with the
+    /// wavelength alone, or with the data's value and the wavelength.
+    Spectral {
+        /// The function, and the data without its last coordinate.
+        field: Arc<Field>,
+        /// Wavelengths and their weights.
+        spectrum: Spectrum,
+    },
     /// `brightfunc … skybr skybright.cal` or `skybright perezlum.cal`: the sky over the ray's direction.
     Sky(SkyDistribution),
 }
@@ -151,6 +177,15 @@ pub enum Material {
     },
     /// A measured or simulated BSDF.
     Bsdf(BsdfMaterial),
+    /// Diffuse, and scattering by a function of the direction to the light.
+    Function(Box<FunctionMaterial>),
+    /// Sends rays on in other directions.
+    Prism {
+        /// For each way four expressions: the share, and the direction of the ray that goes on.
+        field: Arc<Field>,
+        /// One or two.
+        ways: usize,
+    },
 }
 
 /// A transparent medium.
@@ -182,6 +217,86 @@ pub struct Anisotropy {
     pub orientation: Vec3,
     /// RMS slope across the orientation.
     pub roughness: f64,
+}
+
+/// `plasfunc`, `metfunc`, `transfunc`, `plasdata`, `metdata`, `transdata`, `BRTDfunc`.
+#[derive(Clone, Debug)]
+pub struct FunctionMaterial {
+    /// Colour before patterns (white for `BRTDfunc`, whose functions see the pattern alone).
+    pub color: Rgb,
+    /// Diffuse reflectance of front and back.
+    pub diffuse: [Rgb; 2],
+    /// Diffuse transmittance.
+    pub diffuse_transmission: Rgb,
+    /// What the function is multiplied with for light on the ray's side.
+    pub reflection: Rgb,
+    /// And for light on the other side.
+    pub transmission: Rgb,
+    /// Do patterns multiply the reflected function as well?
+    pub is_metal: bool,
+    /// Is the surface turned to face the ray before the function sees it?
+    pub is_turned: bool,
+    /// Are the first six expressions what is mirrored, and what goes straight on?
+    pub has_straight: bool,
+    /// How the field is asked for a value.
+    pub value: FunctionValue,
+    /// The functions.
+    pub field: Arc<Field>,
+}
+
+/// A scattering function [1/sr] of the direction to the light and its solid angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FunctionValue {
+    /// One expression for all channels.
+    Grey(usize),
+    /// An expression for each channel; `None` is 0.
+    Color([Option<usize>; 3]),
+    /// So many coordinates of the field's data, the first expressions; the next one takes the data's value first.
+    Data(usize),
+}
+
+impl FunctionMaterial {
+    /// A black surface.
+    pub(crate) fn new(field: Arc<Field>, value: FunctionValue) -> Self {
+        Self {
+            color: Rgb::ONE,
+            diffuse: [Rgb::ZERO; 2],
+            diffuse_transmission: Rgb::ZERO,
+            reflection: Rgb::ZERO,
+            transmission: Rgb::ZERO,
+            is_metal: false,
+            is_turned: true,
+            has_straight: false,
+            value,
+            field,
+        }
+    }
+
+    /// The value for light from a unit vector, away from the surface, of this solid angle [sr]; never negative.
+    pub fn evaluate(&self, ray: &RayState, direction: Vec3, solid_angle: f64) -> Rgb {
+        let field = &self.field;
+        let d = field.local_direction(direction);
+        let light = [d.x, d.y, d.z, solid_angle];
+        let value = match self.value {
+            FunctionValue::Grey(root) => Rgb::splat(field.call(ray, root, &light).unwrap_or(0.0)),
+            FunctionValue::Color(roots) => Rgb::from_array(
+                roots.map(|root| root.and_then(|root| field.call(ray, root, &light)).unwrap_or(0.0)),
+            ),
+            FunctionValue::Data(dimensions) => {
+                let mut point = Vec::with_capacity(dimensions);
+                point.extend((0..dimensions).filter_map(|root| field.call(ray, root, &light)));
+                match field.arrays().first() {
+                    Some(data) if point.len() == dimensions => {
+                        let value = data.interpolate(&point);
+                        let arguments = [value, d.x, d.y, d.z, solid_angle];
+                        Rgb::splat(field.call(ray, dimensions, &arguments).unwrap_or(0.0))
+                    }
+                    _ => Rgb::ZERO,
+                }
+            }
+        };
+        value.max(Rgb::ZERO)
+    }
 }
 
 /// `BSDF` and `aBSDF`.

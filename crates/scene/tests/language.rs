@@ -18,7 +18,7 @@ const BLACK: &str = "void plastic black 0 0 5 0 0 0 0 0\n";
 fn material(scene: &Scene, index: usize) -> &Material {
     match &scene.modifiers[index].kind {
         ModifierKind::Material(material) => material,
-        ModifierKind::Pattern(pattern) => panic!("a pattern: {pattern:?}"),
+        other => panic!("no material: {other:?}"),
     }
 }
 
@@ -163,13 +163,13 @@ fn degenerate_surfaces_are_left_out_with_a_warning() {
 
 #[test]
 fn what_cannot_be_used_matters_only_when_it_is_used() {
-    let unused = "void colorfunc c 4 1 1 1 . 0 0\nc plastic p 0 0 5 1 1 1 0 0\ninherit alias q p\nvoid plastic z 0 0 4 1 1 1 0\n";
+    let unused = "void specpict c 4 1 1 1 . 0 0\nc plastic p 0 0 5 1 1 1 0 0\ninherit alias q p\nvoid plastic z 0 0 4 1 1 1 0\n";
     let read = scene(unused);
     assert_eq!((read.modifiers.len(), read.warnings.len()), (0, 2));
     let used = message(&format!("{unused}q sphere s 0 0 4 0 0 0 1"));
     assert_eq!(
         used,
-        "t.rad:1:1: colorfunc \"c\": Radiance's \"colorfunc\" is not supported yet (used by sphere \"s\" at t.rad:5:1)"
+        "t.rad:1:1: specpict \"c\": Radiance's \"specpict\" is not supported yet (used by sphere \"s\" at t.rad:5:1)"
     );
 }
 
@@ -217,7 +217,27 @@ fn wrong_texts_are_said_to_be_wrong_and_where() {
         ),
         (
             "void brightfunc f 4 skybr skybright.cal -rx 20 0 7 1 1 1 1 0 0 1 f glow g 0 0 4 1 1 1 0 g source s 0 0 4 0 0 1 180".into(),
-            "a sky whose zenith is tilted is not supported yet",
+            "function file: cannot find the file \"skybright.cal\"; looked for skybright.cal",
+        ),
+        (
+            "void colorfunc c 4 Px Pi Pz . 0 0 c plastic p 0 0 5 1 1 1 0 0 p sphere s 0 0 4 0 0 0 1".into(),
+            "t.rad:1:1: colorfunc \"c\": the variable \"Pi\" is not defined (used by",
+        ),
+        (
+            "void brightfunc b 2 A1+A2 . 0 1 3 b plastic p 0 0 5 1 1 1 0 0 p sphere s 0 0 4 0 0 0 1".into(),
+            "the real argument A2 is asked for, but only 1 are given",
+        ),
+        (
+            "void mixfunc m 4 void grey Px . 0 0 m sphere s 0 0 4 0 0 0 1".into(),
+            "\"grey\" that is to be seen instead is not defined above",
+        ),
+        (
+            "void brightdata b 4 noop no.dat . Px 0 0 b plastic p 0 0 5 1 1 1 0 0 p sphere s 0 0 4 0 0 0 1".into(),
+            "data file: cannot find the file \"no.dat\"; looked for no.dat",
+        ),
+        (
+            "void plastic a 0 0 5 1 1 1 0 0 void mixfunc m 4 void a Px . 0 0 m plastic b 0 0 5 1 1 1 0 0 b sphere s 0 0 4 0 0 0 1".into(),
+            "\"b\" and \"m\" are both materials",
         ),
         ("!genbox white b 1 2".into(), "expected genbox material name xsize ysize zsize"),
         ("!xform -t 1 0 no.rad".into(), "xform: expected a number after -t, found \"no.rad\""),

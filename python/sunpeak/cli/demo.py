@@ -14,11 +14,12 @@ from rich.table import Table
 from sunpeak.cli import options
 from sunpeak.cli.output import note
 from sunpeak.cli.values import parse_size
-from sunpeak.demo import Case, Expectation, Pair, Plan, cases, expectation, pairs, room
-from sunpeak.demo.report import SCALE_CD_M2, report_html, seen
+from sunpeak.demo import DEMO_ROOM
+from sunpeak.demo.report import SCALE_CD_M2, report_html
 from sunpeak.files import write_text
-from sunpeak.images import exposure_of, luminance_cd_m2, save_false_colour, save_png, tonemap
-from sunpeak.progress import Callback, progress_bar
+from sunpeak.images import exposure_of, luminance_cd_m2, save_false_colour, save_png, seen, tonemap
+from sunpeak.progress import Steps, progress_bar
+from sunpeak.rooms import Case, Expectation, Pair, Plan, cases, expectation, pairs
 
 
 def command(
@@ -38,32 +39,24 @@ def command(
     [dim]$[/dim] [cyan]sunpeak demo -o demo[/cyan]
     """
     output.mkdir(parents=True, exist_ok=True)
-    plan = Plan(folder=output, size=size, samples=samples, threads=threads)
+    plan = Plan(output, DEMO_ROOM, size=size, samples=samples, threads=threads)
     found = list(compute(plan, quiet))
-    expected = expectation(room.sky())
+    expected = expectation(DEMO_ROOM)
     write_pictures(output, found)
     write_text(output / "table.json", json.dumps([case.row() for case in found], indent=2) + "\n")
     made_by = shlex.join(["sunpeak", *sys.argv[1:]])
     write_text(output / "report.html", report_html(pairs(found), expected, made_by=made_by))
     console = Console(highlight=False)
     console.print(results(pairs(found), expected))
-    console.print(sun_line(expected), soft_wrap=True)
+    console.print(f"closed form: {expected.in_words()}", soft_wrap=True)
     note(f"\nreport: {output / 'report.html'}", quiet)
 
 
 def compute(plan: Plan, quiet: bool) -> list[Case]:
     """Run the cases with a progress bar for each picture."""
     found: list[Case] = []
-    with progress_bar("demo", not quiet) as advance:
-        total = 2 * len(plan.bases)
-
-        def report(_: str) -> Callback | None:
-            if advance is None:
-                return None
-            finished = len(found)
-            return lambda done, whole: advance(1000 * finished + (1000 * done // whole if whole else 0), 1000 * total)
-
-        for case in cases(plan, report):
+    with progress_bar("demo", not quiet) as bar:
+        for case in cases(plan, Steps(bar, plan.steps())):
             found.append(case)
             note(
                 f"{case.basis:>9} {case.peak:>5}: Ev {case.ev_lux:.0f} lx, DGP {case.dgp:.3f} ({case.seconds:.0f} s)",
@@ -111,12 +104,3 @@ def results(found: list[Pair], expected: Expectation) -> Table:
             f"{100 * (ratio - 1):+.2f} %",
         )
     return table
-
-
-def sun_line(expected: Expectation) -> str:
-    """The closed form in a line."""
-    return (
-        f"closed form: T_fabric {expected.fabric_transmittance:.5f} x T_glazing {expected.glazing_transmittance:.4f}"
-        f" x L_sun {expected.sun_cd_m2:.4g} = {expected.luminance_cd_m2:,.0f} cd/m²"
-        f" at {expected.incidence_deg:.1f} degrees from the fabric's normal"
-    )

@@ -1,7 +1,7 @@
 """`sunpeak glare draw`: pictures about glare."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -10,7 +10,7 @@ from sunpeak.cli.output import note
 from sunpeak.comfort import glare
 from sunpeak.files import check_target
 from sunpeak.glare_draw import panel, save_glare
-from sunpeak.glare_rules import RULES
+from sunpeak.glare_rules import RULES, Stated
 from sunpeak.pictures import Picture
 
 
@@ -37,7 +37,7 @@ def command(
     for path in pictures:
         picture = Picture.load(path)
         zone = options.task_of(picture, task)
-        stated: dict[str, Any] = {"threshold_cd_m2": threshold, "task": zone}
+        stated: Stated = {"threshold_cd_m2": threshold, "task": zone}
         report = glare(picture, rules=rules, **stated)
         for warning in report.warnings:
             note(f"sunpeak: warning: {path}: {warning}")

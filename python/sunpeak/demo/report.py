@@ -6,14 +6,11 @@ from importlib import resources
 from string import Template
 
 import numpy as np
-import numpy.typing as npt
 
 from sunpeak import __version__
-from sunpeak.demo import room
-from sunpeak.demo.expectation import Expectation
-from sunpeak.demo.fabric import FABRIC
-from sunpeak.demo.results import Case, Pair
-from sunpeak.images import colours, exposure_of, false_colour, luminance_cd_m2, png_bytes, tonemap
+from sunpeak.demo.room import DEMO_ROOM
+from sunpeak.images import colours, exposure_of, false_colour, luminance_cd_m2, png_bytes, seen, tonemap
+from sunpeak.rooms import FABRIC, Case, Expectation, Pair
 
 SCALE_CD_M2 = (10.0, 1e7)
 """Ends of the false-colour scale, the same for all pictures."""
@@ -41,11 +38,11 @@ def report_html(pairs: list[Pair], expected: Expectation, *, made_by: str) -> st
         glazing=f"{expected.glazing_transmittance:.4f}",
         sun=quantity(expected.sun_cd_m2),
         expected=quantity(expected.luminance_cd_m2),
-        altitude=f"{room.SUN.altitude_deg:g}",
-        azimuth=f"{room.SUN.azimuth_deg:g}",
-        direct=f"{room.DIRECT_NORMAL_W_M2:g}",
-        diffuse=f"{room.DIFFUSE_HORIZONTAL_W_M2:g}",
-        panes=str(len(room.PANES_Y_M)),
+        altitude=f"{DEMO_ROOM.sun.altitude_deg:g}",
+        azimuth=f"{DEMO_ROOM.sun.azimuth_deg:g}",
+        direct=f"{DEMO_ROOM.direct_normal_w_m2:g}",
+        diffuse=f"{DEMO_ROOM.diffuse_horizontal_w_m2:g}",
+        panes=str(DEMO_ROOM.glazing.panes),
         dgp_spread=f"{spread([pair.with_peak.dgp for pair in pairs if pair.with_peak.basis != 'klems']):.3f}",
         low_dgp=f"{min(pair.without.dgp for pair in pairs):.3f}",
         high_dgp=f"{max(pair.without.dgp for pair in pairs):.3f}",
@@ -107,14 +104,6 @@ def figure(case: Case, exposure: float) -> str:
     {picture(near, f"{pair_name(case)}, the sun close up", "near")}
   </div>
 </figure>"""
-
-
-def seen(shape: tuple[int, ...]) -> npt.NDArray[np.bool_]:
-    """Which pixels (h, w) of the fisheye are before the eye; an angular fisheye has corners that look back."""
-    height, width = shape[:2]
-    y, x = np.mgrid[0:height, 0:width]
-    inside: npt.NDArray[np.bool_] = np.hypot((x + 0.5) / width - 0.5, (y + 0.5) / height - 0.5) <= 0.5
-    return inside
 
 
 def pair_name(case: Case) -> str:

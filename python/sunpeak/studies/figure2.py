@@ -26,7 +26,7 @@ from sunpeak.bsdf_plot import (
 from sunpeak.bsdf_report import PeakSide
 from sunpeak.files import check_target, write_text
 from sunpeak.scattering import Bsdf, Peak
-from sunpeak.studies.peaks_report import Column, table_of
+from sunpeak.studies.markdown import Column, table_of
 from sunpeak.studies.products import Product, clear_glass, panel
 
 if TYPE_CHECKING:

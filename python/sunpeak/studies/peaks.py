@@ -12,7 +12,7 @@ import numpy as np
 from sunpeak import _core
 from sunpeak.scattering import Bsdf, Floats
 from sunpeak.studies.products import EXACT, Product, Seen, decoys, fabric, fabrics, panel, see_through
-from sunpeak.studies.radiance import through_by_radiance
+from sunpeak.studies.radiance_through import through_by_radiance
 
 FABRIC_BASES = ("t3-16384", "t3-4096", "t3-1024", "t4-1024", "klems", "klems-half", "klems-quarter")
 NOISY = Seen(value_noise=0.15 / 16.0)

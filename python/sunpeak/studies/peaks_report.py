@@ -2,8 +2,8 @@
 
 from collections.abc import Callable
 from functools import partial
-from typing import TypeVar
 
+from sunpeak.studies.markdown import Column, table_of
 from sunpeak.studies.peaks import Row
 
 RULES = {
@@ -66,11 +66,6 @@ def degrees(value: float | None) -> str:
     return "none" if value is None else f"{value:.2f}°"
 
 
-About = TypeVar("About")
-"""What a row is about."""
-Column = tuple[str, Callable[[About], str]]
-
-
 def rule_columns(cell: Callable[[Row, str], str]) -> list[Column[Row]]:
     """A column for each rule."""
     return [(title, partial(swapped, cell, rule)) for rule, title in RULES.items()]
@@ -126,12 +121,3 @@ def markdown(rows: list[Row]) -> str:
         if chosen:
             parts.append(f"## {title}\n\n{about}\n\n{table_of(COLUMNS[part], chosen)}\n")
     return "\n".join(parts)
-
-
-def table_of(columns: list[Column[About]], rows: list[About]) -> str:
-    """A table, without the columns that no row fills."""
-    shown = [(title, [cell(row) for row in rows]) for title, cell in columns]
-    shown = [(title, cells) for title, cells in shown if any(cell != "-" for cell in cells)]
-    lines = ["| " + " | ".join(title for title, _ in shown) + " |", "|" + "---|" * len(shown)]
-    lines += ["| " + " | ".join(cells) + " |" for cells in zip(*(cells for _, cells in shown), strict=True)]
-    return "\n".join(lines)

@@ -1,13 +1,16 @@
 //! Light that arrives from emitters: by shadow rays, and by paths that meet them.
 
 use super::{Integrator, Met, path::Path};
+use crate::accel::Hit;
 use crate::guide::Guide;
-use crate::light::{LightSample, power_heuristic};
+use crate::light::{LightSample, at_infinity, power_heuristic};
 use crate::material::{Arrival, Emitter, Inside, Smooth, reflect};
 use crate::shapes::Ray;
 use crate::transmit::Target;
 use crate::world::{Facing, Object};
+use glam::DQuat;
 use sunpeak_core::{Rgb, Sampler, Vec3};
+use sunpeak_scene::RayState;
 
 /// Up to so many pairs of sun and mirror are all tried at every vertex; of more, one at random.
 const ALL_REFLECTED_SUNS: usize = 4;
@@ -30,6 +33,9 @@ impl Integrator<'_> {
             }
         }
         sum += self.suns_in_mirrors(&receiver, sampler);
+        if !self.world.prisms.is_empty() {
+            sum += self.suns_through_prisms(&receiver, sampler);
+        }
         if self.world.distant.has_dome()
             && let Some(sample) = self.world.distant.sample_dome(sampler.next_2d())
         {
@@ -56,6 +62,9 @@ impl Integrator<'_> {
     fn received(&self, receiver: &Receiver, sample: &LightSample, target: &Target) -> Rgb {
         let value = receiver.smooth_value(sample);
         if value.total() == Rgb::ZERO || sample.radiance == Rgb::ZERO {
+            return Rgb::ZERO;
+        }
+        if !receiver.arrival.agrees_on(sample.direction) {
             return Rgb::ZERO;
         }
         let ray = Ray::new(receiver.origin(sample.direction), sample.direction);
@@ -109,9 +118,61 @@ impl Integrator<'_> {
         }
         let onwards = Ray::new(ray.at(hit), sample.direction);
         let to_sun = world.transmitted(&onwards, &Target::sun(sun, &sample), world.inside_at(&onwards));
-        let reflectance = world.mirror_reflectance(mirror);
+        let reflectance = world.mirror_reflectance(&Hit { t: hit, object: mirror }, &ray);
         let factor = receiver.cosine(ray.direction) / sample.pdf;
         value.total() * sample.radiance * to_mirror.share * reflectance * to_sun.share * factor
+    }
+
+    /// Suns that prisms send in another direction: virtual sources too.
+    fn suns_through_prisms(&self, receiver: &Receiver, sampler: &mut Sampler) -> Rgb {
+        let mut sum = Rgb::ZERO;
+        for &sun in self.world.distant.suns() {
+            for &(object, place) in &self.world.prisms {
+                for way in 0..self.world.prism(object).map_or(0, |prism| prism.ways) {
+                    sum += self.sun_through_prism(receiver, sun, (object, place), way, sampler.next_2d());
+                }
+            }
+        }
+        sum
+    }
+
+    fn sun_through_prism(
+        &self,
+        receiver: &Receiver,
+        sun: usize,
+        (object, place): (u32, Vec3),
+        way: usize,
+        u: [f64; 2],
+    ) -> Rgb {
+        let world = self.world;
+        let (Some(prism), Some(sample)) = (world.prism(object), world.distant.sample_sun(sun, u)) else {
+            return Rgb::ZERO;
+        };
+        let Facing::Flat(normal) = world.objects[object as usize].facing else { return Rgb::ZERO };
+        // Where the sun's light goes behind the prism: from there the sun is seen.
+        let center = world.distant.get(sun).direction;
+        let light = RayState::new(place, normal, -center, 0.0);
+        let Some((_, leaving)) = prism.way(way, &light, Vec3::ZERO) else { return Rgb::ZERO };
+        let direction = DQuat::from_rotation_arc(center, -leaving) * sample.direction;
+        let ray = Ray::new(receiver.origin(direction), direction);
+        let Some(hit) = world.accel.crossing_of(&ray, object) else { return Rgb::ZERO };
+        let value = receiver.smooth_value(&LightSample { direction, ..sample });
+        if value.total() == Rgb::ZERO || !receiver.arrival.agrees_on(direction) {
+            return Rgb::ZERO;
+        }
+        let met = RayState::new(ray.at(hit), normal, direction, hit);
+        let Some((share, onwards)) = prism.way(way, &met, center) else { return Rgb::ZERO };
+        if world.distant.seen(onwards) != Some(sun) {
+            return Rgb::ZERO;
+        }
+        let to_prism = world.transmitted(&ray, &Target::point(hit, object), receiver.inside);
+        if to_prism.is_blocked() {
+            return Rgb::ZERO;
+        }
+        let onwards = Ray::new(ray.at(hit), onwards);
+        let to_sun = world.transmitted(&onwards, &Target::sun(sun, &sample), world.inside_at(&onwards));
+        let factor = share * receiver.cosine(direction) / sample.pdf;
+        value.total() * sample.radiance * to_prism.share * to_sun.share * factor
     }
 
     /// What a path that meets nothing finds at infinity.
@@ -126,7 +187,8 @@ impl Integrator<'_> {
             return Rgb::ZERO;
         }
         let shadow_pdf = || self.world.distant.pdf(index, direction);
-        source.emitter.radiance(direction) * weight(path, &source.emitter, f64::INFINITY, shadow_pdf)
+        source.emitter.radiance(&at_infinity(direction))
+            * weight(path, &source.emitter, f64::INFINITY, shadow_pdf)
     }
 
     /// Suns are not left to chance: behind a mirror or a solid of glass that a scattered path met they are found by
@@ -153,15 +215,15 @@ impl Integrator<'_> {
             return Rgb::ZERO;
         }
         let direction = path.ray.direction;
-        let Some(departure) = path.departure else { return emitter.radiance(direction) };
+        let radiance = emitter.radiance(&arrival.ray_state()) * arrival.tint;
+        let Some(departure) = path.departure else { return radiance };
         let distance = departure.point.distance(arrival.point);
         let shadow_pdf = || {
             object.lamp.map_or(0.0, |lamp| {
                 self.world.lamps.pdf(lamp as usize, departure.point, direction, distance, arrival.normal)
             })
         };
-        emitter.radiance(direction)
-            * (emitter.falloff(distance) * weight(path, emitter, distance, shadow_pdf))
+        radiance * (emitter.falloff(distance) * weight(path, emitter, distance, shadow_pdf))
     }
 }
 

@@ -39,6 +39,9 @@ pub(super) struct Path {
     pub ambient: Rgb,
     /// Extinction of the solid that the path is in [1/m].
     extinction: Rgb,
+    /// Way since the camera, and since the path was last scattered, mirrored or refracted [m].
+    travelled: f64,
+    distance: f64,
     /// Mist and antimatter that the path is in.
     pub inside: Inside,
 }
@@ -58,6 +61,8 @@ impl Path {
             first_direction: ray.direction,
             ambient: Rgb::ZERO,
             extinction: Rgb::ZERO,
+            travelled: 0.0,
+            distance: 0.0,
             inside,
         }
     }
@@ -70,10 +75,17 @@ impl Path {
     /// Count the way to a surface.
     pub fn travel(&mut self, distance: f64) {
         self.reach -= distance;
+        self.travelled += distance;
+        self.distance += distance;
         self.events += 1;
         if self.extinction != Rgb::ZERO {
             self.throughput *= (-self.extinction * distance).exp();
         }
+    }
+
+    /// Way since the path was last scattered, mirrored or refracted, and since the camera [m].
+    pub fn way(&self) -> [f64; 2] {
+        [self.distance, self.travelled]
     }
 
     /// Weaken the way to the face of a solid that the path did not enter by a face: it started inside.
@@ -94,6 +106,7 @@ impl Path {
 
     pub fn mirror(&mut self, arrival: &Arrival, share: Rgb, is_flat: bool) {
         self.ray = Ray::new(arrival.point, arrival.mirrored());
+        self.distance = 0.0;
         self.reach = f64::INFINITY;
         self.throughput *= share;
         self.is_bent = true;
@@ -102,6 +115,7 @@ impl Path {
 
     pub fn refract(&mut self, arrival: &Arrival, direction: Vec3, share: Rgb, material: Option<&Material>) {
         self.ray = Ray::new(arrival.point, direction);
+        self.distance = 0.0;
         self.throughput *= share;
         self.is_bent = true;
         self.is_distorted = true;
@@ -113,6 +127,7 @@ impl Path {
 
     pub fn depart(&mut self, departure: Departure, direction: Vec3, weight: Rgb) {
         self.ray = Ray::new(departure.point, direction);
+        self.distance = 0.0;
         self.reach = f64::INFINITY;
         self.throughput *= weight;
         self.departure = Some(departure);

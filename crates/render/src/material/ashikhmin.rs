@@ -44,9 +44,9 @@ impl Ashikhmin {
         let w_in = w_in.normalize();
         let specular = self.specular + (1.0 - self.specular) * schlick(w_in.z);
         let has_highlight = self.specular.max_element() > 0.0;
-        let weights = [luminance(self.diffuse), if has_highlight { luminance(specular) } else { 0.0 }];
-        let lobes =
-            AshikhminLobes { diffuse: self.diffuse, specular: self.specular, powers, frame, w_in, weights };
+        let diffuse = self.diffuse * arrival.tint;
+        let weights = [luminance(diffuse), if has_highlight { luminance(specular) } else { 0.0 }];
+        let lobes = AshikhminLobes { diffuse, specular: self.specular, powers, frame, w_in, weights };
         let smooth = if lobes.albedo() > 0.0 { Smooth::Ashikhmin(lobes) } else { Smooth::None };
         Scattering { smooth, ..Scattering::BLACK }
     }

@@ -87,7 +87,7 @@ impl Dielectric {
         Scattering {
             straight: Rgb::ZERO,
             mirrored: Rgb::splat(reflectance),
-            refracted: self.refract(arrival).map(|(d, share)| (d, Rgb::splat(share))),
+            refracted: [self.refract(arrival).map(|(d, share)| (d, arrival.tint * share)), None],
             smooth: Smooth::None,
         }
     }

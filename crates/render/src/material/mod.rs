@@ -3,9 +3,12 @@
 mod ashikhmin;
 mod dielectric;
 mod emitter;
+mod function;
 mod glass;
+mod prism;
 mod smooth;
 mod table;
+mod varying;
 mod volume;
 mod ward;
 
@@ -13,8 +16,10 @@ pub(crate) use ashikhmin::Ashikhmin;
 pub(crate) use dielectric::Dielectric;
 pub(crate) use emitter::{Emitter, EmitterKind};
 pub(crate) use glass::Glass;
+pub(crate) use prism::Prism;
 pub(crate) use smooth::{Smooth, SmoothSample, SmoothValue};
 pub(crate) use table::Table;
+pub(crate) use varying::{Mixture, Step, Varying, fault_of, tint_of};
 pub(crate) use volume::{Air, Antimatter, Flight, Inside, Mist};
 pub(crate) use ward::WardMaterial;
 
@@ -48,6 +53,12 @@ pub(crate) enum Material {
     Mist(Mist),
     /// `antimatter`, likewise.
     Antimatter(Antimatter),
+    /// `plasfunc`, `BRTDfunc` and their like.
+    Function(Box<sunpeak_scene::FunctionMaterial>),
+    /// `prism1`, `prism2`.
+    Prism(Prism),
+    /// Any of these with patterns, textures or mixtures. Only the world can tell which, so that to the questions here it is nothing.
+    Varying(Varying),
 }
 
 /// A planar mirror: reflects at its front, its back is black.
@@ -68,11 +79,17 @@ pub(crate) struct Arrival {
     pub flat_normal: Vec3,
     /// Unit direction of the ray.
     pub direction: Vec3,
+    /// What patterns multiply the material's colour with.
+    pub tint: Rgb,
+    /// Way of the ray since it was last scattered [m].
+    pub distance: f64,
+    /// Way since the camera [m].
+    pub travelled: f64,
 }
 
 impl Arrival {
     pub fn new(point: Vec3, normal: Vec3, direction: Vec3) -> Self {
-        Self { point, normal, flat_normal: normal, direction }
+        Self { point, normal, flat_normal: normal, direction, tint: Rgb::ONE, distance: 0.0, travelled: 0.0 }
     }
 
     /// The same with a smoothed normal. One that looks away from the ray is mirrored to its side (as Radiance does).
@@ -103,6 +120,12 @@ impl Arrival {
         self.direction.dot(self.normal).abs()
     }
 
+    /// Is a direction on the same side of the surface as it lies and as its normal is bent?
+    pub fn agrees_on(&self, direction: Vec3) -> bool {
+        self.normal == self.flat_normal
+            || (direction.dot(self.normal) > 0.0) == (direction.dot(self.flat_normal) > 0.0)
+    }
+
     /// Direction of the mirrored ray, not into the surface.
     pub fn mirrored(&self) -> Vec3 {
         let mirrored = reflect(self.direction, self.normal);
@@ -123,8 +146,8 @@ pub(crate) struct Scattering<'w> {
     pub straight: Rgb,
     /// Share that is mirrored.
     pub mirrored: Rgb,
-    /// Share that is refracted, and where to.
-    pub refracted: Option<(Vec3, Rgb)>,
+    /// Where rays are refracted to, and with what share; a prism has two ways.
+    pub refracted: [Option<(Vec3, Rgb)>; 2],
     /// All the rest.
     pub smooth: Smooth<'w>,
 }
@@ -132,7 +155,7 @@ pub(crate) struct Scattering<'w> {
 impl Scattering<'_> {
     /// Nothing comes back from the surface.
     pub const BLACK: Scattering<'static> =
-        Scattering { straight: Rgb::ZERO, mirrored: Rgb::ZERO, refracted: None, smooth: Smooth::None };
+        Scattering { straight: Rgb::ZERO, mirrored: Rgb::ZERO, refracted: [None; 2], smooth: Smooth::None };
 }
 
 impl Material {
@@ -144,9 +167,11 @@ impl Material {
             Self::Glass(m) => m.scatter(arrival),
             Self::Dielectric(m) => m.scatter(arrival),
             Self::Mirror(m) if arrival.at_front() => {
-                Scattering { mirrored: m.reflectance, ..Scattering::BLACK }
+                Scattering { mirrored: m.reflectance * arrival.tint, ..Scattering::BLACK }
             }
-            Self::Mirror(_) | Self::Emitter(_) => Scattering::BLACK,
+            Self::Function(m) => function::scatter(m, arrival),
+            Self::Prism(m) => m.scatter(arrival),
+            Self::Mirror(_) | Self::Emitter(_) | Self::Varying(_) => Scattering::BLACK,
             Self::Mist(_) | Self::Antimatter(_) => Scattering { straight: Rgb::ONE, ..Scattering::BLACK },
             Self::Table(m) => m.scatter(arrival, view),
         }
@@ -157,10 +182,16 @@ impl Material {
     pub fn straight(&self, arrival: &Arrival, direct: bool) -> Rgb {
         match self {
             Self::Ward(m) => m.straight(arrival),
-            Self::Glass(m) => m.transmittance(arrival.cosine()),
+            Self::Glass(m) => m.transmittance(arrival.cosine()) * arrival.tint,
             Self::Table(m) => m.straight(arrival, direct),
             Self::Mist(_) | Self::Antimatter(_) => Rgb::ONE,
-            Self::Ashikhmin(_) | Self::Dielectric(_) | Self::Mirror(_) | Self::Emitter(_) => Rgb::ZERO,
+            Self::Function(m) => function::straight(m, arrival),
+            Self::Prism(_) => Rgb::ZERO,
+            Self::Ashikhmin(_)
+            | Self::Dielectric(_)
+            | Self::Mirror(_)
+            | Self::Emitter(_)
+            | Self::Varying(_) => Rgb::ZERO,
         }
     }
 
@@ -168,6 +199,7 @@ impl Material {
     pub fn is_shade(&self) -> bool {
         match self {
             Self::Ward(m) => m.is_trans(),
+            Self::Function(m) => (m.diffuse_transmission + m.transmission).max_element() > 0.0,
             Self::Table(_) => true,
             _ => false,
         }
@@ -179,8 +211,10 @@ impl Material {
         match self {
             Self::Glass(_) | Self::Dielectric(_) | Self::Mist(_) | Self::Antimatter(_) => true,
             Self::Ward(m) => m.is_trans(),
+            Self::Function(m) => (m.diffuse_transmission + m.transmission).max_element() > 0.0,
+            Self::Prism(_) => true,
             Self::Table(m) => m.is_aperture,
-            Self::Ashikhmin(_) | Self::Mirror(_) | Self::Emitter(_) => false,
+            Self::Ashikhmin(_) | Self::Mirror(_) | Self::Emitter(_) | Self::Varying(_) => false,
         }
     }
 }

@@ -67,20 +67,22 @@ impl Table {
         if self.rule == PeakRule::Off || (self.is_reference_rule() && !direct) {
             return Rgb::ZERO;
         }
-        self.bsdf.through(self.frame(arrival.normal).to_local(-arrival.direction), self.rule)
+        self.bsdf.through(self.frame(arrival.normal).to_local(-arrival.direction), self.rule) * arrival.tint
     }
 
     pub fn scatter(&self, arrival: &Arrival, view: bool) -> Scattering<'_> {
         let frame = self.frame(arrival.normal);
         let w_in = frame.to_local(-arrival.direction);
         let goes_straight = self.rule == PeakRule::Split || (self.is_reference_rule() && view);
-        let straight = if goes_straight { self.bsdf.through(w_in, self.rule) } else { Rgb::ZERO };
+        let straight =
+            if goes_straight { self.bsdf.through(w_in, self.rule) * arrival.tint } else { Rgb::ZERO };
         let hemispherical = |mode| luminance(self.bsdf.hemispherical_smooth(w_in, mode, self.rule));
         let lobes = TableLobes {
             table: self,
             frame,
             w_in,
             view,
+            tint: arrival.tint,
             diffuse_reflection: if arrival.at_front() { self.front_diffuse } else { self.back_diffuse },
             sides: Sides {
                 reflected: hemispherical(Mode::Reflection),
@@ -88,7 +90,7 @@ impl Table {
             },
         };
         let smooth = if lobes.albedo() > 0.0 { Smooth::Table(lobes) } else { Smooth::None };
-        Scattering { straight, mirrored: Rgb::ZERO, refracted: None, smooth }
+        Scattering { straight, mirrored: Rgb::ZERO, refracted: [None; 2], smooth }
     }
 }
 
@@ -99,6 +101,8 @@ pub(crate) struct TableLobes<'w> {
     frame: Frame,
     w_in: Vec3,
     view: bool,
+    /// What patterns multiply everything with.
+    tint: Rgb,
     diffuse_reflection: Rgb,
     sides: Sides,
 }
@@ -170,7 +174,7 @@ impl TableLobes<'_> {
     fn diffuse(&self, w_out: Vec3) -> Rgb {
         let is_reflection = w_out.z * self.w_in.z > 0.0;
         let share = if is_reflection { self.diffuse_reflection } else { self.table.diffuse_transmission };
-        share * FRAC_1_PI
+        share * self.tint * FRAC_1_PI
     }
 
     pub fn evaluate(&self, direction: Vec3) -> SmoothValue {
@@ -178,7 +182,7 @@ impl TableLobes<'_> {
         let glossy = if self.is_muted(w_out) {
             Rgb::ZERO
         } else {
-            self.table.bsdf.evaluate_smooth(self.w_in, w_out, self.table.rule)
+            self.table.bsdf.evaluate_smooth(self.w_in, w_out, self.table.rule) * self.tint
         };
         SmoothValue { diffuse: self.diffuse(w_out), glossy }
     }
@@ -196,7 +200,7 @@ impl TableLobes<'_> {
         }
         let w_out = self.frame.to_local(direction);
         let glossy = self.table.bsdf.evaluate_to_source(self.w_in, w_out, solid_angle, self.table.rule);
-        SmoothValue { diffuse: self.diffuse(w_out), glossy }
+        SmoothValue { diffuse: self.diffuse(w_out), glossy: glossy * self.tint }
     }
 
     pub fn pdf(&self, direction: Vec3) -> f64 {

@@ -120,20 +120,22 @@ impl WardMaterial {
         }
     }
 
-    fn shares(&self, cosine: f64) -> Shares {
+    /// `tint`: patterns multiply the colour.
+    fn shares(&self, cosine: f64, tint: Rgb) -> Shares {
+        let color = self.color * tint;
         let rise = if self.is_fresnel() { fresnel_rise(cosine) } else { 0.0 };
         let specularity = self.specularity + rise * (1.0 - self.specularity);
         let transmitted = self.transmissivity * (1.0 - specularity);
         let specular = if self.is_metal {
-            rise + self.color * (self.specularity * (1.0 - rise))
+            rise + color * (self.specularity * (1.0 - rise))
         } else {
             Rgb::splat(specularity)
         };
         Shares {
             specular,
-            diffuse_reflection: self.color * (1.0 - transmitted - specularity).max(0.0),
-            diffuse_transmission: self.color * (transmitted * (1.0 - self.specular_transmission)),
-            specular_transmission: self.color * (transmitted * self.specular_transmission),
+            diffuse_reflection: color * (1.0 - transmitted - specularity).max(0.0),
+            diffuse_transmission: color * (transmitted * (1.0 - self.specular_transmission)),
+            specular_transmission: color * (transmitted * self.specular_transmission),
         }
     }
 
@@ -142,7 +144,7 @@ impl WardMaterial {
         if self.is_rough() || self.transmissivity == 0.0 {
             return Rgb::ZERO;
         }
-        self.shares(arrival.cosine().max(SMALLEST_COSINE)).specular_transmission
+        self.shares(arrival.cosine().max(SMALLEST_COSINE), arrival.tint).specular_transmission
     }
 
     pub fn scatter(&self, arrival: &Arrival) -> Scattering<'static> {
@@ -150,7 +152,7 @@ impl WardMaterial {
         let mut w_in = frame.to_local(-arrival.direction);
         w_in.z = w_in.z.max(SMALLEST_COSINE);
         let w_in = w_in.normalize();
-        let shares = self.shares(w_in.z);
+        let shares = self.shares(w_in.z, arrival.tint);
         let is_rough = self.is_rough();
         let rough = |share: Rgb| if is_rough { share } else { Rgb::ZERO };
         let delta = |share: Rgb| if is_rough { Rgb::ZERO } else { share };
@@ -168,7 +170,7 @@ impl WardMaterial {
         Scattering {
             straight: delta(shares.specular_transmission),
             mirrored: delta(shares.specular),
-            refracted: None,
+            refracted: [None; 2],
             smooth,
         }
     }

@@ -5,7 +5,7 @@ use super::{
     args::{check_counts, check_not_negative, smallest, title, triple, unsupported},
     bsdf,
     orientation::orientation,
-    patterns, volumes,
+    volumes,
 };
 use crate::{Anisotropy, Material, ModifierId, ModifierKind, Ward, raw::Primitive};
 
@@ -16,7 +16,7 @@ const GLASS_INDEX: f64 = 1.52;
 const SMALLEST_ROUGHNESS: f64 = 1e-6;
 
 impl Interpreter<'_> {
-    pub(super) fn kind_of(&self, primitive: &Primitive) -> Result<ModifierKind, Unusable> {
+    pub(super) fn kind_of(&mut self, primitive: &Primitive) -> Result<ModifierKind, Unusable> {
         let material = match primitive.kind.name {
             "plastic" | "plastic2" => Material::Plastic(ward(primitive, "")?),
             "metal" | "metal2" => Material::Metal(ward(primitive, "")?),
@@ -39,8 +39,13 @@ impl Interpreter<'_> {
             }
             "spotlight" => spotlight(primitive)?,
             "BSDF" | "aBSDF" => Material::Bsdf(bsdf::material(primitive, self.options, &self.cwd)?),
-            "brightfunc" => return Ok(ModifierKind::Pattern(patterns::bright_function(primitive)?)),
-            _ => return Err(unsupported(primitive).into()),
+            _ => {
+                if let Some(material) = self.function_material(primitive)? {
+                    return Ok(ModifierKind::Material(material));
+                }
+                let modulation = self.modulation(primitive)?;
+                return modulation.ok_or_else(|| unsupported(primitive).into());
+            }
         };
         Ok(ModifierKind::Material(material))
     }
@@ -59,6 +64,11 @@ impl Interpreter<'_> {
         let name = primitive.strings.first().map_or(VOID, String::as_str);
         let alternate = Some(self.alternate(primitive, name)?);
         Ok(Material::Illum { radiance: triple(&primitive.reals, 0), alternate })
+    }
+
+    /// A modifier that a mixture names.
+    pub(super) fn mixed(&self, primitive: &Primitive, name: &str) -> Result<Option<ModifierId>, Unusable> {
+        self.named(primitive, name, "the modifier to be mixed,")
     }
 
     /// `void` among the names is the face only: it clips nothing.

@@ -29,6 +29,14 @@ impl BlockErrors {
         row / self.edge * self.columns + column / self.edge
     }
 
+    /// Indices of the pixels of a block of a picture of that size, row by row.
+    pub fn pixels(&self, block: usize, width: usize, height: usize) -> impl Iterator<Item = usize> {
+        let (left, top) = (block % self.columns * self.edge, block / self.columns * self.edge);
+        let columns = left..(left + self.edge).min(width);
+        (top..(top + self.edge).min(height))
+            .flat_map(move |row| columns.clone().map(move |column| row * width + column))
+    }
+
     /// Does it belong to a picture of that size?
     pub fn fits(&self, width: usize, height: usize) -> bool {
         let rows = height.div_ceil(self.edge.max(1));

@@ -6,19 +6,27 @@ use super::{
     orientation::Orientation,
     rgbe, scanline,
 };
-use crate::files;
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use sunpeak_core::{Error, LUMINOUS_EFFICACY, Location, Result, Rgb, xyz_to_rgb};
 
 impl Picture {
-    /// Read a Radiance picture: RGBE or XYZE, any run-length code, any orientation.
+    /// Read a Radiance picture: RGBE or XYZE, any run-length code, any orientation. The file is read row by row.
     pub fn load(path: &Path) -> Result<Self> {
-        Self::decode(&files::read(path)?, &path.to_string_lossy())
+        let file = File::open(path).map_err(|source| Error::io(path, source))?;
+        let length = file.metadata().map_err(|source| Error::io(path, source))?.len();
+        Self::read(BufReader::with_capacity(BUFFER, file), length, &path.to_string_lossy())
     }
 
     /// A picture from the bytes of its file; error messages call it `name`.
     pub fn decode(bytes: &[u8], name: &str) -> Result<Self> {
-        let mut lines = Lines { rest: bytes, name, line: 0 };
+        Self::read(bytes, bytes.len() as u64, name)
+    }
+
+    /// A picture from a file of so many bytes (0 if that is not known).
+    fn read(file: impl BufRead, length: u64, name: &str) -> Result<Self> {
+        let mut lines = Lines { rest: file, name, line: 0 };
         let header = lines.header()?;
         let orientation = lines.orientation()?;
         let convert = |pixel: [u8; 4]| {
@@ -29,8 +37,8 @@ impl Picture {
             };
             value.as_vec3().to_array()
         };
-        let pixels =
-            read_pixels(lines.rest, &orientation, convert).map_err(|message| lines.error(message))?;
+        let pixels = read_pixels(&mut lines.rest, length, &orientation, convert)
+            .map_err(|message| lines.error(message))?;
         let (width, height) = (orientation.width, orientation.height);
         Ok(Self {
             width,
@@ -45,20 +53,30 @@ impl Picture {
     }
 }
 
+/// Bytes of the file that are in memory at a time.
+const BUFFER: usize = 1 << 20;
+
+/// Longer lines of a header are none.
+const LONGEST_LINE: u64 = 1 << 20;
+
 /// The lines at the front of the file.
-struct Lines<'f> {
-    rest: &'f [u8],
+struct Lines<'f, R> {
+    rest: R,
     name: &'f str,
     line: usize,
 }
 
-impl Lines<'_> {
-    fn next(&mut self) -> Option<String> {
-        let end = self.rest.iter().position(|&byte| byte == b'\n')?;
-        let line = String::from_utf8_lossy(&self.rest[..end]).trim_end_matches('\r').to_string();
-        self.rest = &self.rest[end + 1..];
+impl<R: BufRead> Lines<'_, R> {
+    /// The next line; `None` if the file ends in it or it is far too long.
+    fn next(&mut self) -> Result<Option<String>> {
+        let mut bytes = Vec::new();
+        let read = self.rest.by_ref().take(LONGEST_LINE).read_until(b'\n', &mut bytes);
+        read.map_err(|error| self.error(error.to_string()))?;
+        if bytes.pop() != Some(b'\n') {
+            return Ok(None);
+        }
         self.line += 1;
-        Some(line)
+        Ok(Some(String::from_utf8_lossy(&bytes).trim_end_matches('\r').to_string()))
     }
 
     fn error(&self, message: impl Into<String>) -> Error {
@@ -66,14 +84,16 @@ impl Lines<'_> {
     }
 
     fn header(&mut self) -> Result<Header> {
-        if !self.rest.starts_with(b"#?") {
+        let mut magic = [0; 2];
+        let is_picture = self.rest.read_exact(&mut magic).is_ok() && magic == *b"#?";
+        if !is_picture || self.next()?.is_none() {
+            self.line = 0;
             return Err(self.error("not a Radiance picture: expected \"#?RADIANCE\" at its beginning"));
         }
-        self.next();
         let mut header = Header::default();
         loop {
             let line = self
-                .next()
+                .next()?
                 .ok_or_else(|| self.error("the file ends in its header: expected an empty line"))?;
             if line.is_empty() {
                 return Ok(header);
@@ -83,7 +103,7 @@ impl Lines<'_> {
     }
 
     fn orientation(&mut self) -> Result<Orientation> {
-        let line = self.next().unwrap_or_default();
+        let line = self.next()?.unwrap_or_default();
         Orientation::parse(&line).ok_or_else(|| {
             self.error(format!("expected the picture's size, such as \"-Y 480 +X 640\", found \"{line}\""))
         })
@@ -94,21 +114,23 @@ impl Lines<'_> {
 const TIGHTEST: usize = 16;
 
 fn read_pixels(
-    mut bytes: &[u8],
+    file: &mut impl BufRead,
+    length: u64,
     orientation: &Orientation,
     convert: impl Fn([u8; 4]) -> [f32; 3],
 ) -> std::result::Result<Vec<[f32; 3]>, String> {
-    let (count, length) = orientation.rows();
+    let (count, width) = orientation.rows();
+    // As much as the file can hold at its tightest, so that pixels need not be moved as they grow.
+    let fits = length as usize / (width / TIGHTEST + 1) + 1 >= count;
     let mut pixels = Vec::new();
-    for row in 1..=count {
-        let read = scanline::read(&mut bytes, length);
-        let read = read.map_err(|message| format!("row {row} of {count}: {message}"))?;
-        if row == 1 {
-            // As much as the rest of the file can hold at its tightest, so that pixels need not be moved as they grow.
-            let fits = bytes.len() / (length / TIGHTEST + 1) + 1 >= count;
-            pixels.reserve_exact(if fits { count * length } else { 0 });
+    let mut row = Vec::new();
+    for number in 1..=count {
+        let read = scanline::read(file, width, &mut row);
+        read.map_err(|message| format!("row {number} of {count}: {message}"))?;
+        if number == 1 {
+            pixels.reserve_exact(if fits { count * width } else { 0 });
         }
-        pixels.extend(read.into_iter().map(&convert));
+        pixels.extend(row.iter().copied().map(&convert));
     }
     Ok(pixels)
 }

@@ -1,5 +1,7 @@
 //! Rows of pixels in a file: flat, in the old run-length code, in the new one (Radiance's `doc/filefmts`, "Picture").
 
+use std::io::{self, BufRead};
+
 /// Rows of other lengths are written flat.
 const RUN_LENGTH_WIDTHS: std::ops::RangeInclusive<usize> = 8..=0x7fff;
 /// Shorter runs are written as they are.
@@ -9,36 +11,41 @@ const RUN_FLAG: u8 = 128;
 const LONGEST_RUN: usize = 127;
 const LONGEST_LITERAL: usize = 128;
 
-/// Read a row of `width` pixels from the front of `bytes`.
-pub fn read(bytes: &mut &[u8], width: usize) -> Result<Vec<[u8; 4]>, String> {
-    match **bytes {
-        [2, 2, high, low, ..] if high < 128 => {
+/// Read a row of `width` pixels into `row`, in place of what is there.
+pub fn read(file: &mut impl BufRead, width: usize, row: &mut Vec<[u8; 4]>) -> Result<(), String> {
+    row.clear();
+    match take(file)? {
+        [2, 2, high, low] if high < 128 => {
             let said = usize::from(high) << 8 | usize::from(low);
             if said != width {
                 return Err(format!("a row of {said} pixels, expected {width}"));
             }
-            *bytes = &bytes[4..];
-            new_run_length(bytes, width)
+            new_run_length(file, width, row)
         }
-        _ => old_run_length(bytes, width),
+        first => old_run_length(file, first, width, row),
     }
 }
 
-const CUT_SHORT: &str = "the file ends too early";
+fn take<const N: usize>(file: &mut impl BufRead) -> Result<[u8; N], String> {
+    let mut bytes = [0; N];
+    file.read_exact(&mut bytes).map_err(message)?;
+    Ok(bytes)
+}
 
-fn take<const N: usize>(bytes: &mut &[u8]) -> Result<[u8; N], String> {
-    let (front, rest) = bytes.split_first_chunk::<N>().ok_or(CUT_SHORT)?;
-    *bytes = rest;
-    Ok(*front)
+fn message(error: io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::UnexpectedEof => "the file ends too early".into(),
+        _ => error.to_string(),
+    }
 }
 
 /// The four components one after the other, each in runs and literal bytes.
-fn new_run_length(bytes: &mut &[u8], width: usize) -> Result<Vec<[u8; 4]>, String> {
-    let mut row = Vec::new();
+fn new_run_length(file: &mut impl BufRead, width: usize, row: &mut Vec<[u8; 4]>) -> Result<(), String> {
+    let mut literal = [0; RUN_FLAG as usize];
     for component in 0..4 {
         let mut at = 0;
         while at < width {
-            let [code] = take(bytes)?;
+            let [code] = take(file)?;
             let run = code > RUN_FLAG;
             let count = usize::from(if run { code - RUN_FLAG } else { code });
             if at + count > width {
@@ -46,29 +53,31 @@ fn new_run_length(bytes: &mut &[u8], width: usize) -> Result<Vec<[u8; 4]>, Strin
             }
             // The row grows with the data, so that a wrong width does not cost memory.
             row.resize(row.len().max(at + count), [0; 4]);
+            let pixels = row[at..at + count].iter_mut();
             if run {
-                let [value] = take(bytes)?;
-                row[at..at + count].iter_mut().for_each(|pixel: &mut [u8; 4]| pixel[component] = value);
+                let [value] = take(file)?;
+                pixels.for_each(|pixel: &mut [u8; 4]| pixel[component] = value);
             } else {
-                let literal = bytes.get(..count).ok_or(CUT_SHORT)?;
-                row[at..at + count]
-                    .iter_mut()
-                    .zip(literal)
-                    .for_each(|(pixel, &value)| pixel[component] = value);
-                *bytes = &bytes[count..];
+                let literal = &mut literal[..count];
+                file.read_exact(literal).map_err(message)?;
+                pixels.zip(literal).for_each(|(pixel, value)| pixel[component] = *value);
             }
             at += count;
         }
     }
-    Ok(row)
+    Ok(())
 }
 
 /// Pixels; one of (1, 1, 1, n) repeats the one before n times, and the next such one 256 n times.
-fn old_run_length(bytes: &mut &[u8], width: usize) -> Result<Vec<[u8; 4]>, String> {
-    let mut row: Vec<[u8; 4]> = Vec::new();
-    let mut shift = 0;
+fn old_run_length(
+    file: &mut impl BufRead,
+    first: [u8; 4],
+    width: usize,
+    row: &mut Vec<[u8; 4]>,
+) -> Result<(), String> {
+    let (mut shift, mut next) = (0, Some(first));
     while row.len() < width {
-        let pixel = take::<4>(bytes)?;
+        let pixel = next.take().map_or_else(|| take(file), Ok)?;
         if let [1, 1, 1, count] = pixel {
             let last = *row.last().ok_or("a row that begins with a repetition")?;
             let count = usize::from(count).checked_shl(shift).unwrap_or(usize::MAX).min(width - row.len());
@@ -79,7 +88,7 @@ fn old_run_length(bytes: &mut &[u8], width: usize) -> Result<Vec<[u8; 4]>, Strin
             shift = 0;
         }
     }
-    Ok(row)
+    Ok(())
 }
 
 /// Append a row.

@@ -1,4 +1,4 @@
-"""What the demo finds, one case for each basis without and with peak extraction."""
+"""What an experiment finds, one case for each basis without and with peak extraction."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -6,13 +6,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-LABELS = {
-    "klems": "Klems 145 × 145",
-    "t3-1024": "tensor tree, max. 1024 × 1024",
-    "t3-4096": "tensor tree, max. 4096 × 4096",
-    "t3-16384": "tensor tree, max. 16384 × 16384",
-}
-"""How people call the bases."""
+from sunpeak.rooms.fabric import LABELS
 
 
 @dataclass(frozen=True)
@@ -23,6 +17,8 @@ class Case:
     peak: str
     ev_lux: float
     dgp: float
+    dgp_interval: tuple[float, float]
+    """95 % interval by the noise of the picture."""
     max_luminance_cd_m2: float
     seconds: float
     pixels: npt.NDArray[np.float32]

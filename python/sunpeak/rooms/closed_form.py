@@ -1,12 +1,11 @@
-"""What the sun's luminance behind the demo's facade must be, from closed forms alone."""
+"""What the sun's luminance behind a facade must be, from closed forms alone."""
 
 import math
 from dataclasses import dataclass
 
-from sunpeak.demo import room
-from sunpeak.demo.fabric import FABRIC
 from sunpeak.images import luminance_cd_m2
-from sunpeak.skies import Sky
+from sunpeak.rooms.fabric import FABRIC
+from sunpeak.rooms.room import Room
 
 GLASS_INDEX = 1.52
 """Refractive index of `glass` in Radiance unless the material states another (reference manual, "Glass")."""
@@ -30,17 +29,24 @@ class Expectation:
         """Luminance of the disc behind glass and fabric."""
         return self.fabric_transmittance * self.glazing_transmittance * self.sun_cd_m2
 
+    def in_words(self) -> str:
+        """The closed form in a line."""
+        return (
+            f"T_fabric {self.fabric_transmittance:.5f} x T_glazing {self.glazing_transmittance:.4f}"
+            f" x L_sun {self.sun_cd_m2:.4g} = {self.luminance_cd_m2:,.0f} cd/m²"
+            f" at {self.incidence_deg:.1f} degrees from the fabric's normal"
+        )
 
-def expectation(sky: Sky) -> Expectation:
-    """Work it out for the demo's facade, whose normal is the y axis."""
-    direction, radiance = sky.sun_direction, sky.sun_radiance
-    if direction is None or radiance is None:
-        raise ValueError("the demo's sky has no sun")
-    cosine = abs(direction[1])
+
+def expectation(room: Room) -> Expectation:
+    """Work it out for a room; the facade's normal is the y axis."""
+    radiance = room.sky().sun_radiance
+    assert radiance is not None
+    cosine = abs(room.sun_direction[1])
     return Expectation(
         incidence_deg=math.degrees(math.acos(cosine)),
         fabric_transmittance=FABRIC.through(math.acos(cosine)),
-        glazing_transmittance=glazing_transmittance(room.PANE_TRANSMISSIVITY, cosine, len(room.PANES_Y_M)),
+        glazing_transmittance=glazing_transmittance(room.glazing.transmissivity, cosine, room.glazing.panes),
         sun_cd_m2=float(luminance_cd_m2(radiance)),
     )
 
