@@ -169,7 +169,7 @@ impl Interpreter<'_> {
         at_least(primitive, 4, "a function, a data file, a function file and coordinates")?;
         let data = self.data_file(primitive, &primitive.strings[1])?;
         let dimensions = data.dimensions();
-        if dimensions < 2 || dimensions > MAX_DIMENSIONS {
+        if !(2..=MAX_DIMENSIONS).contains(&dimensions) {
             return Err(format!(
                 "{}: expected data of 2 or more dimensions, the last the wavelength",
                 title(primitive)
