@@ -86,9 +86,7 @@ def test_surfaces_are_those_of_radiance(
     Path("defs.cal").write_text("{ a hump } half : .5; bump(x) = sin(PI*x)^2;")
     # Ours say what these are, without a file of Radiance's.
     theirs_says, ours_says = b"rev_dx rev_dy rev_dz rev.cal", SMOOTHING.encode()
-    Path("theirs.rad").write_bytes(
-        radiance.run(*shlex.split(command), folder=tmp_path).replace(theirs_says, ours_says)
-    )
+    Path("theirs.rad").write_bytes(radiance.run(*shlex.split(command), folder=tmp_path).replace(theirs_says, ours_says))
     ours, theirs = words(f"!{command}"), words("theirs.rad")
     assert len(ours) == len(theirs) > 0
     for mine, other in zip(ours, theirs, strict=True):
