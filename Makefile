@@ -24,7 +24,7 @@ export VIRTUAL_ENV := $(CURDIR)/$(VENV)
 export PATH := $(BIN):$(PATH)
 unexport PYTHONHOME PYTHONPATH
 
-.PHONY: help build demo test test-rust test-python lint fmt bench docs lock clean
+.PHONY: help build demo test test-rust test-python lint fmt bench fuzz docs lock clean
 
 help: ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 20
@@ -58,7 +58,15 @@ bench: build ## Benchmarks: name, ours, theirs, ratio for rays, sampling, throug
 	$(CARGO) bench --locked $(CRATES) --bench '*'
 	$(BIN)/python benches/demo_room.py
 	$(BIN)/python benches/large_files.py
+	$(BIN)/python benches/large_scene.py
 	$(BIN)/python benches/glare_picture.py
+
+fuzz: ## Readers against hostile input, a minute each (needs a nightly compiler and cargo-fuzz)
+	for target in scene expression view picture bsdf; do \
+		mkdir -p fuzz/corpus/$$target; \
+		$(CARGO) +nightly fuzz run $$target fuzz/corpus/$$target fuzz/seeds/$$target -- \
+			-max_total_time=60 -timeout=20 -rss_limit_mb=4096 -max_len=4096; \
+	done
 
 docs: ## The crates' documentation, into target/doc
 	$(CARGO) doc --locked $(CRATES) --no-deps

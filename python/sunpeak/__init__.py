@@ -4,19 +4,26 @@ Directions are unit vectors; world axes are Radiance's (x east, y north, z up), 
 channels in Radiance's primaries [W sr⁻¹ m⁻²]; luminance [cd/m²] = 179 (0.265 R + 0.670 G + 0.065 B).
 """
 
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from sunpeak._core import InputError, __version__
-from sunpeak.bsdf_plot import plot_bsdf
-from sunpeak.bsdf_report import BsdfReport
-from sunpeak.bsdf_verdict import Verdict
-from sunpeak.comfort import glare
-from sunpeak.fabrics import Fabric
-from sunpeak.glare_report import GlareReport, GlareSource, ZoneLuminances
-from sunpeak.glare_rules import GlareRules, RulesName, Task
-from sunpeak.pictures import ExactSource, Picture
-from sunpeak.rendering import World, render, trace
-from sunpeak.scattering import Bsdf, Evidence, Samples, direction, side_of_ray
-from sunpeak.scenes import Rays, Scene, View
-from sunpeak.skies import Place, Sky, SunPosition, sun_position
+
+if TYPE_CHECKING:
+    from sunpeak.bsdf_plot import plot_bsdf
+    from sunpeak.bsdf_report import BsdfReport
+    from sunpeak.bsdf_verdict import Verdict
+    from sunpeak.comfort import glare
+    from sunpeak.expressions import evaluate
+    from sunpeak.fabrics import Fabric, RollerBlind
+    from sunpeak.glare_report import GlareReport, GlareSource, ZoneLuminances
+    from sunpeak.glare_rules import GlareRules, RulesName, Task
+    from sunpeak.pictures import ExactSource, Picture
+    from sunpeak.rendering import World, render, trace
+    from sunpeak.scattering import Bsdf, Evidence, Samples, direction, side_of_ray
+    from sunpeak.scene_check import SceneCheck, check_scene
+    from sunpeak.scenes import Rays, Scene, View
+    from sunpeak.skies import Place, Sky, SunPosition, sun_position
 
 __all__ = [
     "Bsdf",
@@ -31,9 +38,11 @@ __all__ = [
     "Picture",
     "Place",
     "Rays",
+    "RollerBlind",
     "RulesName",
     "Samples",
     "Scene",
+    "SceneCheck",
     "Sky",
     "SunPosition",
     "Task",
@@ -42,7 +51,9 @@ __all__ = [
     "World",
     "ZoneLuminances",
     "__version__",
+    "check_scene",
     "direction",
+    "evaluate",
     "glare",
     "plot_bsdf",
     "render",
@@ -50,3 +61,54 @@ __all__ = [
     "sun_position",
     "trace",
 ]
+
+_HOMES = {
+    "plot_bsdf": "bsdf_plot",
+    "BsdfReport": "bsdf_report",
+    "Verdict": "bsdf_verdict",
+    "glare": "comfort",
+    "evaluate": "expressions",
+    "Fabric": "fabrics",
+    "RollerBlind": "fabrics",
+    "GlareReport": "glare_report",
+    "GlareSource": "glare_report",
+    "ZoneLuminances": "glare_report",
+    "GlareRules": "glare_rules",
+    "RulesName": "glare_rules",
+    "Task": "glare_rules",
+    "ExactSource": "pictures",
+    "Picture": "pictures",
+    "World": "rendering",
+    "render": "rendering",
+    "trace": "rendering",
+    "Bsdf": "scattering",
+    "Evidence": "scattering",
+    "Samples": "scattering",
+    "direction": "scattering",
+    "side_of_ray": "scattering",
+    "SceneCheck": "scene_check",
+    "check_scene": "scene_check",
+    "Rays": "scenes",
+    "Scene": "scenes",
+    "View": "scenes",
+    "Place": "skies",
+    "Sky": "skies",
+    "SunPosition": "skies",
+    "sun_position": "skies",
+}
+"""Where each name lives; a module is read when a name of it is first asked for, so that small commands start fast."""
+
+
+def __getattr__(name: str) -> Any:
+    """Give a public name, from the module that has it."""
+    home = _HOMES.get(name)
+    if home is None:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(f"{__name__}.{home}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """List the public names."""
+    return sorted(__all__)

@@ -1,6 +1,6 @@
 """The compiled core: arrays are (n, 3) float64 and contiguous; the classes of `sunpeak` say the rest."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -11,6 +11,8 @@ import numpy.typing as npt
 __version__: str
 
 _Floats = npt.NDArray[np.float64]
+# A file or `!command`, or a name, a text and a folder.
+_Part = str | PathLike[str] | tuple[str, bytes, str]
 
 class InputError(ValueError):
     """The input is wrong: the message says where (file:line:column), what was found, what was expected."""
@@ -87,6 +89,13 @@ class Scene:
     def load(files: list[str], search_path: list[str], allow_commands: bool) -> Scene: ...
     @staticmethod
     def parse(text: str, name: str, search_path: list[str], allow_commands: bool) -> Scene: ...
+    @staticmethod
+    def load_parts(
+        parts: Sequence[_Part], cwd: str | PathLike[str], search_path: list[str], allow_commands: bool
+    ) -> Scene: ...
+    @staticmethod
+    def check(files: list[str], search_path: list[str], allow_commands: bool) -> tuple[Scene, list[str], list[str]]: ...
+    def surface_labels(self) -> list[tuple[str, str, str, bool]]: ...
     @property
     def surface_names(self) -> list[str]: ...
     @property
@@ -94,11 +103,24 @@ class Scene:
     @property
     def warnings(self) -> list[str]: ...
 
+def read_octree(data: bytes, name: str) -> tuple[list[str], Path, int | None, list[Path | tuple[str, bytes, Path]]]: ...
+def write_octree(
+    history: list[str], cwd: str | PathLike[str], surfaces: int | None, parts: Sequence[_Part]
+) -> bytes: ...
+def expanded_scene(
+    parts: Sequence[_Part], cwd: str | PathLike[str], search_path: list[str], allow_commands: bool
+) -> list[tuple[Path, str]]: ...
+
 class View:
     @staticmethod
     def load(path: str | PathLike[str]) -> View: ...
     @staticmethod
     def parse(options: str) -> View: ...
+    @staticmethod
+    def parse_words(words: list[str]) -> View: ...
+    @property
+    def aspect(self) -> float: ...
+    def rays_at(self, points: _Floats) -> tuple[_Floats, _Floats, _Floats]: ...
     def options(self) -> str: ...
     def fields(self) -> dict[str, Any]: ...
     def fit_size(self, max_width: int, max_height: int) -> tuple[int, int]: ...
@@ -113,6 +135,7 @@ class Picture:
     def from_pixels(
         pixels: npt.NDArray[np.float32], view: View | None, header: list[str], sources: _Floats
     ) -> Picture: ...
+    def encode(self, header: list[str]) -> bytes: ...
     def save(self, path: str | PathLike[str]) -> None: ...
     @property
     def shape(self) -> tuple[int, int]: ...
@@ -139,10 +162,19 @@ def fabric_xml(
     lobe_sigma: float,
     reflectance: float,
 ) -> str: ...
+def roller_blind_xml(
+    basis: str, tau_nn: float, tau_nh: float, rho_front: float, rho_back: float, cutoff_deg: float | None
+) -> str: ...
+def roller_blind_transmittance(
+    tau_nn: float, tau_nh: float, rho_front: float, rho_back: float, cutoff_deg: float | None, incidence_rad: float
+) -> tuple[float, float, float]: ...
 
 class World:
     @staticmethod
     def compile(scene: Scene, peak: str) -> World: ...
+    def first_surfaces(
+        self, origins: _Floats, directions: _Floats
+    ) -> tuple[_Floats, _Floats, _Floats, npt.NDArray[np.int64]]: ...
 
 def render(
     world: World,
@@ -155,6 +187,7 @@ def render(
     seed: int,
     threads: int | None,
     max_bounces: int | None,
+    ambient: tuple[float, float, float],
     goal: tuple[str, float] | None,
     progress: Callable[[int, int], None] | None,
 ) -> Picture: ...
@@ -169,5 +202,10 @@ def trace(
     seed: int,
     threads: int | None,
     max_bounces: int | None,
+    ambient: tuple[float, float, float],
+    error_of_each: bool,
     progress: Callable[[int, int], None] | None,
 ) -> _Floats: ...
+def evaluate(
+    definitions: str, expressions: list[str], channels: npt.NDArray[np.float64], arguments: list[float]
+) -> npt.NDArray[np.float64]: ...

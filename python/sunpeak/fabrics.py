@@ -51,3 +51,49 @@ class Fabric:
                 self.reflectance,
             ),
         )
+
+
+@dataclass(frozen=True)
+class RollerBlind:
+    """A roller blind by its datasheet, in the quantities of EN 14500, visible or solar.
+
+    Off-normal values follow Kotey, Wright and Collins, "Determining off-normal solar optical properties of roller
+    blinds", ASHRAE Transactions 115(1), 2009. Both sides let the same through, and scattered light leaves as
+    reciprocity then asks.
+    """
+
+    tau_nn: float
+    """Normal-normal transmittance [-]: straight through at normal incidence. Not the nominal openness."""
+    tau_nh: float
+    """Normal-hemispherical transmittance [-]: all that gets through at normal incidence, `tau_nn` included."""
+    rho_front: float
+    """Normal-hemispherical reflectance of the side towards the sun [-]."""
+    rho_back: float
+    """The same of the side towards the room [-]."""
+    cut_off_deg: float | None = None
+    """Angle of incidence from which nothing goes straight through; none: the model's, 65 and more by the openness."""
+
+    def through(self, incidence_rad: float) -> float:
+        """Through transmittance [-] at an angle of incidence."""
+        return self._at(incidence_rad)[0]
+
+    def total(self, incidence_rad: float) -> float:
+        """Transmittance in all [-], straight and scattered, at an angle of incidence."""
+        return self._at(incidence_rad)[1]
+
+    def cut_off(self) -> float:
+        """Angle of incidence from which nothing goes straight through [deg]."""
+        return self._at(0.0)[2]
+
+    def _numbers(self) -> tuple[float, float, float, float, float | None]:
+        return self.tau_nn, self.tau_nh, self.rho_front, self.rho_back, self.cut_off_deg
+
+    def _at(self, incidence_rad: float) -> tuple[float, float, float]:
+        return _core.roller_blind_transmittance(*self._numbers(), incidence_rad)
+
+    def write(self, path: str | PathLike[str], basis: str = "klems") -> None:
+        """Tabulate by exact cell averages and write an LBNL XML file, whole or not at all; bases as for `Fabric`.
+
+        Raises `InputError` where the numbers contradict each other.
+        """
+        write_text(path, _core.roller_blind_xml(basis, *self._numbers()))

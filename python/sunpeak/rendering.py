@@ -45,6 +45,7 @@ def render(
     seed: int = 0,
     threads: int | None = None,
     max_bounces: int | None = None,
+    ambient: tuple[float, float, float] = (0.0, 0.0, 0.0),
     progress: bool | Callback = False,
 ) -> Picture:
     """Render a picture of `size` (width, height) pixels.
@@ -56,7 +57,8 @@ def render(
     of Ev over Ev, is no wider than that to each side. With several, whatever comes first ends it.
 
     The same seed and number of samples give the same picture on any number of `threads` (None: all cores).
-    `max_bounces` limits diffuse bounces, as Radiance's `-ab`; None is no limit. `peak` says which part of `aBSDF`
+    `max_bounces` limits diffuse bounces, as Radiance's `-ab`; None is no limit. `ambient` (three channels
+    [W sr⁻¹ m⁻²]) stands for all diffuse light past them, as Radiance's `-av`. `peak` says which part of `aBSDF`
     tables goes straight through; a `World` has chosen already.
 
     `progress` shows a bar on standard error, or is a function that is called with the work done and in all. Ctrl-C
@@ -67,7 +69,19 @@ def render(
     goal = (until, 0.0) if isinstance(until, str) else until
     with reporting(progress, "rendering") as callback:
         picture = _core.render(
-            world._core, view._core, width, height, samples, time, error, seed, threads, max_bounces, goal, callback
+            world._core,
+            view._core,
+            width,
+            height,
+            samples,
+            time,
+            error,
+            seed,
+            threads,
+            max_bounces,
+            ambient,
+            goal,
+            callback,
         )
     return Picture(picture)
 
@@ -82,16 +96,19 @@ def trace(
     samples: int | None = None,
     time: float | None = None,
     error: float | None = None,
+    error_of_each: bool = False,
     seed: int = 0,
     threads: int | None = None,
     max_bounces: int | None = None,
+    ambient: tuple[float, float, float] = (0.0, 0.0, 0.0),
     progress: bool | Callback = False,
 ) -> Floats:
     """Radiance along rays (n, 3) [W sr⁻¹ m⁻²], or irradiance at sensors [W m⁻²]: three channels (n, 3).
 
     `origins` (n, 3) are points [m]; `directions` (n, 3) are where the rays go, or the normals of the sensors; their
-    length does not count. The other arguments are those of `render`. 179 (0.265 R + 0.670 G + 0.065 B) gives
-    luminance [cd/m²] or illuminance [lx].
+    length does not count. `error` is relative to the mean of all; with `error_of_each` that of each ray is relative to
+    its own, so that a dark sensor counts as much as a bright one. The other arguments are those of `render`.
+    179 (0.265 R + 0.670 G + 0.065 B) gives luminance [cd/m²] or illuminance [lx].
     """
     points, towards = rows(origins), normalized(rows(directions))
     if len(points) != len(towards):
@@ -99,7 +116,19 @@ def trace(
     world = compiled(scene, peak)
     with reporting(progress, "tracing") as callback:
         return _core.trace(
-            world._core, points, towards, irradiance, samples, time, error, seed, threads, max_bounces, callback
+            world._core,
+            points,
+            towards,
+            irradiance,
+            samples,
+            time,
+            error,
+            seed,
+            threads,
+            max_bounces,
+            ambient,
+            error_of_each,
+            callback,
         )
 
 

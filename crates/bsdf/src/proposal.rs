@@ -180,8 +180,8 @@ impl Proposal {
             }
             Cells::Leaves(leaves) => {
                 let block = self.shares.pick(column, u[0]);
-                let rest = self.shares.rest(column, block, u[0]);
-                leaves.point(p_in, column, block, [rest, u[1], u[2]])?
+                let rest = || self.shares.rest(column, block, u[0]);
+                leaves.point(p_in, column, block, rest, [u[1], u[2]])?
             }
             Cells::Points(points) => (points.point(&self.shares, p_in, column, u), None),
         };

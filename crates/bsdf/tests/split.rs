@@ -198,7 +198,7 @@ fn what_goes_through_the_holes_of_a_dyed_cloth_is_gray() {
 fn nothing_is_taken_from_lobes_that_the_basis_resolves() {
     for name in ["klems", "klems-half", "t3-256", "t3-1024", "t3-4096", "t4-256", "t4-1024"] {
         let mut resolved = 0;
-        for tenth_width_deg in [5.0, 10.0, 15.0, 20.0, 30.0, 40.0] {
+        for tenth_width_deg in [5.0, 10.0, 20.0, 40.0] {
             for same_angle in [false, true] {
                 let panel = Panel { transmittance: 0.5, tenth_width_deg, same_angle };
                 let bsdf = tabulate(&panel, name.parse().unwrap(), &Goniophotometer::default()).unwrap();
@@ -248,6 +248,9 @@ fn measured(bsdf: &Bsdf, instrument: Instrument) -> Bsdf {
     Bsdf::from_sides(document, sides)
 }
 
+/// Full widths at half maximum [deg]; the finest tables have fewer here, and all in `sunpeak study peaks`.
+const BLURS: &[f64] = &[0.5, 1.0, 2.0, 5.0];
+
 fn found_width(bsdf: &Bsdf) -> Option<f64> {
     bsdf.distribution(Vec3::Z, Mode::Transmission).unwrap().distribution.split().instrument_fwhm_deg()
 }
@@ -256,8 +259,8 @@ fn found_width(bsdf: &Bsdf) -> Option<f64> {
 fn a_peak_that_an_instrument_widened_comes_back() {
     let product = Woven::new(Fabric { scattered: 0.07, ..Fabric::default() });
     let directions = directions_to(0.85 * product.fabric().cutoff_deg, 100);
-    for name in ["klems", "t3-1024", "t3-4096"] {
-        for fwhm_deg in [0.5, 1.0, 2.0, 5.0] {
+    for (name, widths) in [("klems", BLURS), ("t3-1024", BLURS), ("t3-4096", &[0.5, 2.0])] {
+        for &fwhm_deg in widths {
             let seen_by = Goniophotometer { fwhm_deg, ..Goniophotometer::default() };
             let bsdf = tabulate(&product, name.parse().unwrap(), &seen_by).unwrap();
             for instrument in [Instrument::FwhmDeg(fwhm_deg), Instrument::Find] {
@@ -277,11 +280,12 @@ fn a_peak_that_an_instrument_widened_comes_back() {
 /// A lobe that keeps its width on the disk, and a delta, are no instrument's.
 #[test]
 fn scatterers_and_sharp_peaks_are_not_taken_for_an_instrument() {
-    for name in ["klems", "t3-1024", "t3-4096", "t4-256"] {
+    for (name, widths) in [("klems", BLURS), ("t3-1024", BLURS), ("t3-4096", &[0.5, 2.0]), ("t4-256", &[5.0])]
+    {
         let basis: Basis = name.parse().unwrap();
         let sharp = tabulate(&Woven::new(Fabric::default()), basis, &Goniophotometer::default()).unwrap();
         assert_eq!(found_width(&measured(&sharp, Instrument::Find)), None, "{name}");
-        for fwhm_deg in [0.5, 1.0, 2.0, 5.0] {
+        for &fwhm_deg in widths {
             let tenth_width_deg = fwhm_deg * (10f64.ln() / 2f64.ln()).sqrt();
             let panel = Panel { transmittance: 0.3, tenth_width_deg, same_angle: false };
             let bsdf = tabulate(&panel, basis, &Goniophotometer::default()).unwrap();
@@ -295,5 +299,18 @@ fn an_instrument_of_no_width_is_refused() {
     for fwhm in [0.0, -1.0, f64::NAN, 90.0] {
         let said = Instrument::FwhmDeg(fwhm).check().unwrap_err().to_string();
         assert!(said.contains("expected 0.05 to 20"), "{said}");
+    }
+}
+
+/// Memory beside a table with a peak in every column stays below a quarter of it.
+#[test]
+fn the_split_takes_little_memory() {
+    let glass = Pane { index: 1.52, internal: 1.0 };
+    for name in ["klems", "klems-half", "klems-quarter", "t3-1024", "t3-4096", "t4-256", "t4-1024"] {
+        let bsdf = tabulate(&glass, name.parse().unwrap(), &Goniophotometer::default()).unwrap();
+        let d = &bsdf.distribution(Vec3::Z, Mode::Transmission).unwrap().distribution;
+        let share = d.split().bytes() as f64 / size_of_val(d.luminous().values()) as f64;
+        println!("{name}: {:.1} %", 100.0 * share);
+        assert!(d.split().has_peak() && share < 0.25, "{name}: {share}");
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::error::OrRaise;
 use pyo3::prelude::*;
-use sunpeak_bsdf::synthetic::{Basis, Fabric};
+use sunpeak_bsdf::synthetic::{Basis, Fabric, RollerBlind};
 
 /// Tabulate a fabric from its formulas: `basis` is `klems`, `klems-half`, `klems-quarter`, `t3-N` or `t4-N`.
 #[pyfunction]
@@ -21,4 +21,51 @@ pub fn fabric_xml(
     let fabric = Fabric { openness, cutoff_deg, exponent, scattered, lobe_share, lobe_sigma, reflectance };
     let basis: Basis = basis.parse().or_raise()?;
     py.detach(|| Ok(fabric.tabulate(basis)?.to_xml())).or_raise()
+}
+
+fn roller_blind(
+    tau_nn: f64,
+    tau_nh: f64,
+    rho_front: f64,
+    rho_back: f64,
+    cutoff_deg: Option<f64>,
+) -> PyResult<RollerBlind> {
+    let blind = RollerBlind {
+        normal_normal: tau_nn,
+        normal_hemispherical: tau_nh,
+        reflectance: [rho_front, rho_back],
+        cutoff_deg,
+    };
+    blind.check().or_raise()?;
+    Ok(blind)
+}
+
+/// Tabulate a roller blind from its datasheet.
+#[pyfunction]
+pub fn roller_blind_xml(
+    py: Python<'_>,
+    basis: &str,
+    tau_nn: f64,
+    tau_nh: f64,
+    rho_front: f64,
+    rho_back: f64,
+    cutoff_deg: Option<f64>,
+) -> PyResult<String> {
+    let blind = roller_blind(tau_nn, tau_nh, rho_front, rho_back, cutoff_deg)?;
+    let basis: Basis = basis.parse().or_raise()?;
+    py.detach(|| Ok(blind.tabulate(basis)?.to_xml())).or_raise()
+}
+
+/// Through transmittance, transmittance in all [-], and the cut-off angle [deg], at an angle of incidence [rad].
+#[pyfunction]
+pub fn roller_blind_transmittance(
+    tau_nn: f64,
+    tau_nh: f64,
+    rho_front: f64,
+    rho_back: f64,
+    cutoff_deg: Option<f64>,
+    incidence_rad: f64,
+) -> PyResult<(f64, f64, f64)> {
+    let blind = roller_blind(tau_nn, tau_nh, rho_front, rho_back, cutoff_deg)?;
+    Ok((blind.through(incidence_rad), blind.total(incidence_rad), blind.cutoff_deg()))
 }

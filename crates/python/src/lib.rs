@@ -4,6 +4,7 @@ mod arrays;
 mod bsdf;
 mod bsdf_report;
 mod error;
+mod expressions;
 mod fabric;
 mod glare;
 mod goal;
@@ -29,7 +30,9 @@ mod _core {
     #[pymodule_export]
     use super::error::InputError;
     #[pymodule_export]
-    use super::fabric::fabric_xml;
+    use super::expressions::evaluate;
+    #[pymodule_export]
+    use super::fabric::{fabric_xml, roller_blind_transmittance, roller_blind_xml};
     #[pymodule_export]
     use super::glare::{glare, glare_sources, position_indices};
     #[pymodule_export]
@@ -37,7 +40,7 @@ mod _core {
     #[pymodule_export]
     use super::render::{PyWorld, render, trace};
     #[pymodule_export]
-    use super::scene::{PyScene, PyView};
+    use super::scene::{PyScene, PyView, expanded_scene, read_octree, write_octree};
     #[pymodule_export]
     use super::sky::PySky;
     #[pymodule_export]

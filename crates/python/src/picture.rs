@@ -4,6 +4,7 @@ use crate::error::{InputError, OrRaise};
 use crate::scene::PyView;
 use numpy::{PyArray2, PyArray3, PyReadonlyArray2, PyReadonlyArray3, ndarray};
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 use std::path::PathBuf;
 use std::sync::Arc;
 use sunpeak_core::Vec3;
@@ -48,6 +49,12 @@ impl PyPicture {
 
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         py.detach(|| self.0.save(&path)).or_raise()
+    }
+
+    /// The bytes of its file, with other header lines.
+    fn encode<'py>(&self, py: Python<'py>, header: Vec<String>) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = py.detach(|| Picture { header, ..(*self.0).clone() }.encode()).or_raise()?;
+        Ok(PyBytes::new(py, &bytes))
     }
 
     #[getter]

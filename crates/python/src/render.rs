@@ -1,17 +1,19 @@
 //! Rendering: `World`, pictures, rays and sensors.
 
-use crate::arrays::{Rows, rows, vectors};
+use crate::arrays::{Numbers, Rows, numbers, rows, vectors};
 use crate::bsdf::peak_rule;
 use crate::error::{InputError, OrRaise};
 use crate::goal::GlareGoal;
 use crate::picture::PyPicture;
 use crate::scene::{PyScene, PyView};
 use crate::watch::run_watched;
-use numpy::PyReadonlyArray2;
+use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use std::sync::Arc;
+use sunpeak_core::{Rgb, Vec3};
 use sunpeak_render::{
-    PictureJudge, RenderOptions, World, WorldOptions, render_until, trace_irradiance, trace_radiance,
+    FirstSurface, PictureJudge, RenderOptions, World, WorldOptions, first_surfaces, render_until,
+    trace_irradiance, trace_radiance,
 };
 use sunpeak_scene::Picture;
 
@@ -27,7 +29,31 @@ impl PyWorld {
         let world = py.detach(|| World::compile(&scene.0, &options)).or_raise()?;
         Ok(Self(Arc::new(world)))
     }
+
+    /// What rays meet first: distances (n,), points and front normals (n, 3), indices of surfaces (n,); infinity, NaN and -1 where nothing is
+    /// met.
+    fn first_surfaces<'py>(
+        &self,
+        py: Python<'py>,
+        origins: PyReadonlyArray2<'py, f64>,
+        directions: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<FirstSurfaces<'py>> {
+        let (points, towards) = (vectors(&origins, "origins")?, vectors(&directions, "directions")?);
+        let rays: Vec<_> = points.into_iter().zip(towards).collect();
+        let found = py.detach(|| first_surfaces(&self.0, &rays)).or_raise()?;
+        let place = |part: fn(&FirstSurface) -> Vec3| -> Vec<Vec3> {
+            found.iter().map(|first| first.as_ref().map_or(Vec3::NAN, part)).collect()
+        };
+        let distances =
+            found.iter().map(|first| first.map_or(f64::INFINITY, |first| first.distance)).collect();
+        let surfaces = found.iter().map(|first| first.map_or(-1, |first| first.surface as i64)).collect();
+        let (points, normals) = (place(|first| first.point), place(|first| first.normal));
+        Ok((numbers(py, distances), rows(py, &points), rows(py, &normals), PyArray1::from_vec(py, surfaces)))
+    }
 }
+
+/// Distances, points, normals, surfaces.
+type FirstSurfaces<'py> = (Numbers<'py>, Rows<'py>, Rows<'py>, Bound<'py, PyArray1<i64>>);
 
 fn options(
     samples: Option<u32>,
@@ -36,8 +62,10 @@ fn options(
     seed: u64,
     threads: Option<usize>,
     max_bounces: Option<u32>,
+    ambient: [f64; 3],
 ) -> RenderOptions {
-    RenderOptions { samples, time_s, error, seed, threads, max_bounces, ..RenderOptions::default() }
+    let ambient = Rgb::from_array(ambient);
+    RenderOptions { samples, time_s, error, seed, threads, max_bounces, ambient, ..RenderOptions::default() }
 }
 
 /// Render a picture; `progress` is called with the work done and in all.
@@ -55,10 +83,11 @@ pub fn render(
     seed: u64,
     threads: Option<usize>,
     max_bounces: Option<u32>,
+    ambient: [f64; 3],
     goal: Option<(String, f64)>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<PyPicture> {
-    let options = options(samples, time_s, error, seed, threads, max_bounces);
+    let options = options(samples, time_s, error, seed, threads, max_bounces, ambient);
     let goal = goal.map(|(kind, value)| GlareGoal::of(&kind, value)).transpose()?;
     let picture = run_watched(py, progress.as_ref(), |control| {
         let judge = goal.map(|goal| move |picture: &Picture| goal.is_reached(picture));
@@ -83,9 +112,12 @@ pub fn trace<'py>(
     seed: u64,
     threads: Option<usize>,
     max_bounces: Option<u32>,
+    ambient: [f64; 3],
+    error_of_each: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Rows<'py>> {
-    let options = options(samples, time_s, error, seed, threads, max_bounces);
+    let options = options(samples, time_s, error, seed, threads, max_bounces, ambient);
+    let options = RenderOptions { error_of_each, ..options };
     let (points, towards) = (vectors(&origins, "origins")?, vectors(&directions, "directions")?);
     if points.len() != towards.len() {
         return Err(InputError::new_err("origins and directions: expected as many rows of both"));

@@ -8,8 +8,8 @@
 //! passes and flat mirrors are followed, both ways at every pane, so reflections between parallel panes count as well.
 
 use crate::World;
-use crate::light::is_in_cone;
-use crate::material::{Arrival, Material};
+use crate::light::{at_infinity, is_in_cone};
+use crate::material::{Arrival, Inside, Material};
 use crate::shapes::Ray;
 use crate::world::{Facing, Seen};
 use sunpeak_core::{Frame, Rgb, Sampler, Vec3, luminance, warp};
@@ -139,7 +139,8 @@ fn mirrors(world: &World, id: crate::material::MaterialId) -> bool {
         Material::Mirror(m) => m.alternate.flatten().is_none_or(|a| mirrors(world, a)),
         Material::Emitter(e) => matches!(e.kind, Illum { alternate: Some(a) } if mirrors(world, a)),
         Material::Ward(m) => m.is_polished(),
-        Material::Table(_) => false,
+        Material::Varying(v) => v.materials().into_iter().any(|id| mirrors(world, id)),
+        _ => false,
     }
 }
 
@@ -182,32 +183,36 @@ impl Chains<'_> {
     fn radiance(&self, direction: Vec3) -> Rgb {
         let Some([x, y]) = self.camera.project(direction) else { return Rgb::ZERO };
         let Some(ray) = self.camera.ray(x, y) else { return Rgb::ZERO };
-        let chain = Chain {
-            ray: Ray::new(ray.origin, direction),
-            reach: ray.max_distance,
-            share: Rgb::ONE,
-            surfaces: 0,
-        };
-        self.followed(chain)
+        let (reach, ray) = (ray.max_distance, Ray::new(ray.origin, direction));
+        let inside = self.world.inside_at(&ray);
+        self.followed(Chain { ray, reach, share: Rgb::ONE, surfaces: 0, inside })
     }
 
     /// Radiance of the sun at the ends of all chains that go on from here.
     fn followed(&self, chain: Chain) -> Rgb {
         let mut open = vec![chain];
         let mut sum = Rgb::ZERO;
-        while let Some(chain) = open.pop() {
-            let Some(hit) = self.world.accel.closest(&chain.ray, chain.reach) else {
+        while let Some(mut chain) = open.pop() {
+            let hit = self.world.accel.closest(&chain.ray, chain.reach);
+            if let Some(air) = self.world.air(&chain.inside) {
+                chain.share *= air.transmittance(hit.map_or(chain.reach, |hit| hit.t));
+            }
+            let Some(hit) = hit else {
                 let is_sun = chain.reach.is_infinite()
                     && self.world.distant.seen(chain.ray.direction) == Some(self.disc.source);
                 if is_sun {
                     let emitter = &self.world.distant.get(self.disc.source).emitter;
-                    sum += chain.share * emitter.radiance(chain.ray.direction);
+                    sum += chain.share * emitter.radiance(&at_infinity(chain.ray.direction));
                 }
                 continue;
             };
             let object = self.world.object(&hit);
-            let arrival = self.world.arrival(&hit, &chain.ray);
-            match self.world.seen(object, &arrival, true) {
+            // Mixtures: the points of the disc are seen by many chains.
+            let place = chain.ray.at(hit.t);
+            let mut choose = || scattered(place);
+            let inside = &mut chain.inside;
+            let (seen, arrival) = self.world.meet(&hit, &chain.ray, true, inside, [0.0; 2], &mut choose);
+            match seen {
                 Seen::Void => open.extend(chain.straight(&arrival, hit.t, Rgb::ONE)),
                 Seen::Emitter(_) => {}
                 Seen::Surface(material) => {
@@ -223,6 +228,11 @@ impl Chains<'_> {
     }
 }
 
+/// A number in [0, 1) that looks random, of a place.
+fn scattered(point: Vec3) -> f64 {
+    (point.dot(Vec3::new(12.9898, 78.233, 37.719)) * 43_758.545_3).rem_euclid(1.0)
+}
+
 /// A chain that is being followed.
 #[derive(Clone, Copy)]
 struct Chain {
@@ -230,6 +240,7 @@ struct Chain {
     reach: f64,
     share: Rgb,
     surfaces: u32,
+    inside: Inside,
 }
 
 impl Chain {
@@ -244,7 +255,7 @@ impl Chain {
     }
 
     fn onwards(&self, ray: Ray, reach: f64, share: Rgb) -> Option<Self> {
-        let next = Self { ray, reach, share: self.share * share, surfaces: self.surfaces + 1 };
+        let next = Self { ray, reach, share: self.share * share, surfaces: self.surfaces + 1, ..*self };
         (luminance(next.share) > SMALLEST_SHARE && next.surfaces < MAX_SURFACES).then_some(next)
     }
 }

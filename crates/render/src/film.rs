@@ -63,6 +63,7 @@ pub fn render_until(
         |pixel, s| film.sample(&integrator, pixel, s),
         judge_means.as_ref().map(|judge| judge as _),
     )?;
+    world.check_expressions()?;
     Ok(picture(&means))
 }
 

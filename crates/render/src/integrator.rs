@@ -9,7 +9,7 @@ mod path;
 
 use crate::exact_sun::ExactSuns;
 use crate::guide::Guide;
-use crate::material::{Arrival, Material, Scattering, Smooth, SmoothSample};
+use crate::material::{Air, Arrival, Flight, Material, Scattering, Smooth, SmoothSample};
 use crate::shapes::Ray;
 use crate::world::{Facing, Object, Seen};
 use crate::{RenderOptions, World};
@@ -28,12 +28,14 @@ const ROULETTE_CEILING: f64 = 0.95;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limits {
     pub max_bounces: Option<u32>,
+    /// Radiance of all that lies past the last diffuse bounce.
+    pub ambient: Rgb,
     pub max_depth: u32,
 }
 
 impl Limits {
     pub fn of(options: &RenderOptions) -> Self {
-        Self { max_bounces: options.max_bounces, max_depth: options.max_depth }
+        Self { max_bounces: options.max_bounces, ambient: options.ambient, max_depth: options.max_depth }
     }
 }
 
@@ -49,16 +51,18 @@ pub(crate) struct Integrator<'w> {
 impl Integrator<'_> {
     /// Radiance that arrives along the ray from surfaces before `reach` (and from infinity if that is infinite).
     pub fn radiance(&self, ray: Ray, reach: f64, sampler: &mut Sampler) -> Rgb {
-        self.trace(Path::from_camera(ray, reach), sampler)
+        let inside = self.world.inside_at(&ray);
+        self.trace(Path::from_camera(ray, reach, inside), sampler)
     }
 
     /// Irradiance [W/m²] on the front of a surface element.
     pub fn irradiance(&self, point: Vec3, normal: Vec3, sampler: &mut Sampler) -> Rgb {
         let sensor = Met::sensor(point, normal);
-        let mut path = Path::from_camera(Ray::new(point, -normal), f64::INFINITY);
+        let ray = Ray::new(point, -normal);
+        let mut path = Path::from_camera(ray, f64::INFINITY, self.world.inside_at(&ray));
         let direct = self.direct(&path, &sensor, sampler);
         if !self.scatter(&mut path, &sensor, sampler) {
-            return direct;
+            return direct + path.ambient;
         }
         direct + self.trace(path, sampler)
     }
@@ -66,13 +70,33 @@ impl Integrator<'_> {
     fn trace(&self, mut path: Path, sampler: &mut Sampler) -> Rgb {
         let mut sum = Rgb::ZERO;
         while path.events <= self.limits.max_depth {
-            let Some(hit) = self.world.accel.closest(&path.ray, path.reach) else {
+            let hit = self.world.accel.closest(&path.ray, path.reach);
+            if let Some(air) = self.world.air(&path.inside) {
+                let length = hit.map_or(path.reach, |hit| hit.t);
+                match air.fly(path.throughput, length, sampler.next_1d(), sampler.next_1d()) {
+                    Flight::Through(share) => path.throughput *= share,
+                    Flight::Scattered(distance, share) => {
+                        path.throughput *= share;
+                        let met = Met::air(&air, path.ray.at(distance), path.ray.direction);
+                        path.travel(distance);
+                        sum += path.throughput * self.direct(&path, &met, sampler);
+                        if !self.scatter(&mut path, &met, sampler) || !survives(&mut path, sampler) {
+                            return sum;
+                        }
+                        continue;
+                    }
+                }
+            }
+            let Some(hit) = hit else {
                 return sum + path.throughput * self.light_from_infinity(&path);
             };
             let object = self.world.object(&hit);
-            let arrival = self.world.arrival(&hit, &path.ray);
+            let (view, way) = (path.is_view(), path.way());
+            let mut choose = || sampler.next_1d();
+            let inside = &mut path.inside;
+            let (seen, arrival) = self.world.meet(&hit, &path.ray, view, inside, way, &mut choose);
             path.travel(hit.t);
-            match self.world.seen(object, &arrival, path.is_view()) {
+            match seen {
                 Seen::Void => path.go_straight(arrival.point, Rgb::ONE),
                 Seen::Emitter(emitter) => {
                     return sum + path.throughput * self.light_from_lamp(&path, object, &arrival, emitter);
@@ -84,7 +108,7 @@ impl Integrator<'_> {
                         sum += path.throughput * self.direct(&path, &met, sampler);
                     }
                     if !self.go_on(&mut path, &met, sampler) || !survives(&mut path, sampler) {
-                        return sum;
+                        return sum + path.ambient;
                     }
                 }
             }
@@ -101,13 +125,16 @@ impl Integrator<'_> {
         }
         let choice = sampler.next_1d() * whole;
         if choice < straight {
-            path.go_straight(met.arrival.point, met.scattering.straight * (whole / straight));
+            path.go_straight(met.straight_origin(), met.scattering.straight * (whole / straight));
             path.is_past_peak |= matches!(met.material, Some(Material::Table(_)));
         } else if choice < straight + mirrored {
             path.mirror(&met.arrival, met.scattering.mirrored * (whole / mirrored), met.is_flat);
         } else if choice < straight + mirrored + refracted {
-            let Some((direction, share)) = met.scattering.refracted else { return false };
-            path.refract(&met.arrival, direction, share * (whole / refracted), met.material);
+            let [first, second] = met.scattering.refracted;
+            let of_first = first.map_or(0.0, |(_, share)| luminance(share));
+            let is_first = choice - straight - mirrored < of_first;
+            let Some((direction, share)) = (if is_first { first } else { second }) else { return false };
+            path.refract(&met.arrival, direction, share * (whole / luminance(share)), met.material);
         } else {
             return self.scatter(path, met, sampler);
         }
@@ -117,6 +144,9 @@ impl Integrator<'_> {
     /// Go on in a direction drawn from the smooth lobes, or where the guide points.
     fn scatter(&self, path: &mut Path, met: &Met, sampler: &mut Sampler) -> bool {
         let Some(sample) = self.draw(met, sampler) else { return false };
+        if !met.arrival.agrees_on(sample.direction) {
+            return false;
+        }
         let share = met.smooth_share();
         let mut weight = sample.weight.total();
         if weight == Rgb::ZERO {
@@ -127,6 +157,8 @@ impl Integrator<'_> {
             let diffuse = luminance(sample.weight.diffuse) / luminance(weight);
             let is_diffuse = sampler.next_1d() < diffuse;
             if is_diffuse && path.bounces >= limit {
+                path.ambient =
+                    path.throughput * sample.weight.diffuse / (diffuse * share) * self.limits.ambient;
                 return false;
             }
             weight = if is_diffuse {
@@ -136,7 +168,7 @@ impl Integrator<'_> {
             };
             path.bounces += u32::from(is_diffuse);
         }
-        let point = met.arrival.point;
+        let point = met.arrival.point + met.scattering.smooth.offset(sample.direction);
         let departure = Departure { point, pdf: sample.pdf * share, source_factor: sample.source_factor };
         path.depart(departure, sample.direction, weight / share);
         true
@@ -177,16 +209,40 @@ struct Met<'w> {
 impl<'w> Met<'w> {
     fn new(object: &Object, material: &'w Material, arrival: Arrival, view: bool) -> Self {
         let scattering = material.scatter(&arrival, view);
-        let refracted = scattering.refracted.map_or(0.0, |(_, share)| luminance(share));
+        let refracted = scattering.refracted.iter().flatten().map(|(_, share)| luminance(*share)).sum();
         let [straight, mirrored] = [scattering.straight, scattering.mirrored].map(luminance);
         let shares = [straight, mirrored, refracted, scattering.smooth.albedo()];
         let is_flat = matches!(object.facing, Facing::Flat(_));
         Self { arrival, material: Some(material), is_flat, scattering, shares }
     }
 
+    /// A point of the air at which a ray of this direction is scattered.
+    fn air(air: &Air, point: Vec3, direction: Vec3) -> Self {
+        let scattering = Scattering { smooth: Smooth::Phase(air.phase(direction)), ..Scattering::BLACK };
+        let arrival = Arrival::new(point, -direction, direction);
+        Self { arrival, material: None, is_flat: true, scattering, shares: [0.0, 0.0, 0.0, 1.0] }
+    }
+
+    /// Where light that is scattered starts: at the surface, and beyond what a table with thickness stands for.
+    fn origins(&self) -> impl Iterator<Item = Vec3> {
+        let far = match self.material {
+            Some(Material::Table(table)) if table.is_proxy() => Some(self.straight_origin()),
+            _ => None,
+        };
+        std::iter::once(self.arrival.point).chain(far)
+    }
+
+    /// Where a ray that goes straight on starts: beyond the geometry that a table with thickness stands for.
+    fn straight_origin(&self) -> Vec3 {
+        match self.material {
+            Some(Material::Table(table)) => self.arrival.point + table.offset(self.arrival.normal),
+            _ => self.arrival.point,
+        }
+    }
+
     /// A surface element that takes up all light at its front.
     fn sensor(point: Vec3, normal: Vec3) -> Self {
-        let arrival = Arrival { point, normal, direction: -normal };
+        let arrival = Arrival::new(point, normal, -normal);
         let scattering =
             Scattering { smooth: Smooth::Sensor(Frame::from_normal(normal)), ..Scattering::BLACK };
         Self { arrival, material: None, is_flat: true, scattering, shares: [0.0, 0.0, 0.0, 1.0] }

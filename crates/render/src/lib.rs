@@ -55,6 +55,7 @@ mod light;
 mod material;
 mod options;
 mod passes;
+mod probe;
 mod sensor;
 mod shapes;
 mod stopping;
@@ -65,6 +66,7 @@ mod world;
 
 pub use film::{PictureJudge, render_picture, render_until};
 pub use options::{DEFAULT_MAX_DEPTH, DEFAULT_SAMPLES, RenderOptions, WorldOptions};
+pub use probe::{FirstSurface, first_surfaces};
 pub use sensor::{trace_irradiance, trace_radiance};
 pub use world::World;
 

@@ -2,6 +2,7 @@
 
 use std::{path::PathBuf, sync::Arc};
 use sunpeak_bsdf::{Bsdf, PeakRule};
+use sunpeak_core::Rgb;
 
 /// How a scene is compiled.
 #[derive(Clone, Debug, Default)]
@@ -22,6 +23,8 @@ pub struct RenderOptions {
     /// standard error of their luminance, relative to the mean luminance of all. Exact suns have none. With `samples` or
     /// `time_s` whatever comes first.
     pub error: Option<f64>,
+    /// Is `error` that of each ray or sensor relative to its own mean, so that a dark one counts as much as a bright one?
+    pub error_of_each: bool,
     /// Time to spend [s]: passes go on until the next one would not fit. At least one path each.
     pub time_s: Option<f64>,
     /// The same seed and number of paths give the same result, on any number of threads.
@@ -30,6 +33,8 @@ pub struct RenderOptions {
     /// Skies and far `glow`s are found by indirect rays, so they need one bounce; scattering by rough highlights and by BSDF
     /// tables is no bounce, as in Radiance.
     pub max_bounces: Option<u32>,
+    /// Radiance's `-av`: radiance [W sr⁻¹ m⁻²] that stands for all diffuse light past `max_bounces`.
+    pub ambient: Rgb,
     /// Surfaces of any kind that a path may meet; a safeguard, since paths end by Russian roulette.
     pub max_depth: u32,
     /// Threads to use; `None` is all cores.
@@ -49,9 +54,11 @@ impl Default for RenderOptions {
         Self {
             samples: None,
             error: None,
+            error_of_each: false,
             time_s: None,
             seed: 0,
             max_bounces: None,
+            ambient: Rgb::ZERO,
             max_depth: DEFAULT_MAX_DEPTH,
             threads: None,
             exact_suns: true,

@@ -115,18 +115,22 @@ impl Run<'_> {
     }
 
     fn is_good_enough(&self, judge: Option<Judge>) -> Result<bool> {
-        let by_error = self.goal.error.is_some_and(|goal| self.error.relative().is_some_and(|e| e <= goal));
+        let by_error = self.goal.error.is_some_and(|goal| self.relative_error().is_some_and(|e| e <= goal));
         match judge {
             Some(judge) if !by_error => judge(&self.means()),
             _ => Ok(by_error),
         }
     }
 
+    fn relative_error(&self) -> Option<f64> {
+        if self.goal.error_of_each { self.error.relative_to_own() } else { self.error.relative() }
+    }
+
     fn means(&self) -> Means {
         Means {
             values: self.sums.iter().map(|&sum| sum / f64::from(self.done)).collect(),
             samples: self.done,
-            error: self.goal.error.and_then(|_| self.error.relative()),
+            error: self.goal.error.and_then(|_| self.relative_error()),
             group_errors: self.error.standard_errors(),
         }
     }
@@ -137,6 +141,7 @@ struct Goal {
     items: u64,
     samples: u32,
     error: Option<f64>,
+    error_of_each: bool,
     time: Option<Duration>,
     start: Instant,
     /// Units of progress reported so far, where the goal is a time.
@@ -167,6 +172,7 @@ impl Goal {
             items: items as u64,
             samples,
             error: options.error,
+            error_of_each: options.error_of_each,
             time,
             start: Instant::now(),
             reported: Mutex::new(0),

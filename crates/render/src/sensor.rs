@@ -23,8 +23,10 @@ pub fn trace_radiance(
         let mut sampler = Sampler::new(options.seed, item as u64, index);
         integrator.radiance(Ray::new(origin, direction), f64::INFINITY, &mut sampler)
     };
-    Ok(estimate(rays.len(), options, Reports { control, rays: &world.rays }, |item| item as u32, sample)?
-        .values)
+    let reports = Reports { control, rays: &world.rays };
+    let means = estimate(rays.len(), options, reports, |item| item as u32, sample)?;
+    world.check_expressions()?;
+    Ok(means.values)
 }
 
 /// Irradiance [W m⁻²] at sensors, each given by a point and a normal (of any length).
@@ -43,8 +45,10 @@ pub fn trace_irradiance(
         let (point, normal) = sensors[item];
         integrator.irradiance(point, normal, &mut Sampler::new(options.seed, item as u64, index))
     };
-    Ok(estimate(sensors.len(), options, Reports { control, rays: &world.rays }, |item| item as u32, sample)?
-        .values)
+    let reports = Reports { control, rays: &world.rays };
+    let means = estimate(sensors.len(), options, reports, |item| item as u32, sample)?;
+    world.check_expressions()?;
+    Ok(means.values)
 }
 
 /// Finite points and unit vectors.

@@ -57,6 +57,17 @@ impl ErrorEstimate {
         Some(self.squares.iter().zip(&self.sums).map(error).collect())
     }
 
+    /// Root mean square of the groups' standard errors, each relative to the group's own mean, over those that have any light;
+    /// `None` while that cannot be told.
+    pub fn relative_to_own(&self) -> Option<f64> {
+        let errors = self.standard_errors()?;
+        let means = self.sums.iter().map(|sum| sum / f64::from(self.samples));
+        let parts = errors.iter().zip(means).filter(|(_, mean)| *mean > 0.0);
+        let (count, squares) =
+            parts.fold((0.0, 0.0), |(n, sum), (error, mean)| (n + 1.0, sum + (error / mean).powi(2)));
+        Some(if count > 0.0 { (squares / count).sqrt() } else { 0.0 })
+    }
+
     /// Root mean square of the groups' standard errors, relative to the mean over all groups; `None` while that cannot be told.
     pub fn relative(&self) -> Option<f64> {
         let errors = self.standard_errors()?;
@@ -92,6 +103,22 @@ mod tests {
         let truth = (1.0f64 / 12.0 / 4.0 / f64::from(done)).sqrt() / 0.5;
         let error = estimate.relative().expect("enough samples");
         assert!((error / truth - 1.0).abs() < 0.05, "{error} {truth}");
+    }
+
+    #[test]
+    fn a_dim_group_counts_as_much_as_a_bright_one() {
+        let (mut random, mut estimate) = (Random(5), ErrorEstimate::new(vec![0, 1, 2]));
+        let mut sums = vec![Rgb::ZERO; 3];
+        for done in 1..=64 {
+            sums[0] += gray(1e6);
+            sums[1] += gray(random.next());
+            estimate.add(&sums, done);
+        }
+        let own = estimate.relative_to_own().expect("enough samples");
+        // Uniform numbers, and what is without error; the dark group does not count.
+        let expected = (1.0f64 / 12.0 / 64.0).sqrt() / 0.5 / 2.0_f64.sqrt();
+        assert!((own / expected - 1.0).abs() < 0.2, "{own} {expected}");
+        assert!(estimate.relative().expect("enough samples") < 1e-6);
     }
 
     #[test]

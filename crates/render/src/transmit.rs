@@ -3,8 +3,10 @@
 use crate::World;
 use crate::accel::Hit;
 use crate::light::LightSample;
-use crate::material::{Alternate, Arrival, Dielectric, EmitterKind, Material};
+use crate::material::{Alternate, Arrival, Dielectric, EmitterKind, Inside, Material, Varying};
 use crate::shapes::{COINCIDENT, Ray};
+use crate::world::Seen;
+use sunpeak_bsdf::PeakRule;
 use sunpeak_core::{Rgb, Vec3};
 
 /// Layers that are told apart on the fast way; more than that, refraction or coincident layers, and the ray is followed step by
@@ -84,8 +86,11 @@ enum Pass<'w> {
 }
 
 impl World {
-    /// Share of the light that comes through from the target.
-    pub(crate) fn transmitted(&self, ray: &Ray, target: &Target) -> Transmitted {
+    /// Share of the light that comes through from the target to a place that is in these volumes.
+    pub(crate) fn transmitted(&self, ray: &Ray, target: &Target, inside: Inside) -> Transmitted {
+        if self.has_volumes {
+            return self.followed(*ray, target, inside);
+        }
         let mut layers = Layers::default();
         let mut result = Some(Transmitted::CLEAR);
         self.accel.each_crossing(ray, target.distance * (1.0 - SHORT_OF_TARGET), |hit| {
@@ -103,21 +108,37 @@ impl World {
             };
             result.is_some_and(|r| !r.is_blocked())
         });
-        result.unwrap_or_else(|| self.followed(*ray, target))
+        result.unwrap_or_else(|| self.followed(*ray, target, inside))
     }
 
-    /// The same, surface after surface, with refraction.
-    fn followed(&self, mut ray: Ray, target: &Target) -> Transmitted {
+    /// The same, surface after surface, with refraction, mist and antimatter.
+    fn followed(&self, mut ray: Ray, target: &Target, mut inside: Inside) -> Transmitted {
         let mut result = Transmitted::CLEAR;
-        let mut rest = target.distance * (1.0 - SHORT_OF_TARGET);
+        let end = target.distance * (1.0 - SHORT_OF_TARGET);
+        let mut travelled = 0.0;
         let mut is_refracted = false;
         for _ in 0..MAX_STEPS {
-            let Some(hit) = self.accel.closest(&ray, rest).filter(|hit| !is_target(hit, target)) else {
+            let rest = end - travelled;
+            let is_on_the_way = |hit: &Hit| !is_target(&Hit { t: travelled + hit.t, ..*hit }, target);
+            let hit = self.accel.closest(&ray, rest).filter(is_on_the_way);
+            if let Some(air) = self.air(&inside) {
+                result = result.times(air.transmittance(hit.map_or(rest, |hit| hit.t)), false);
+            }
+            let Some(hit) = hit else {
                 let is_missed = is_refracted && self.distant.seen(ray.direction) != target.sun;
                 return if is_missed { Transmitted::BLOCKED } else { result };
             };
             let point = ray.at(hit.t);
-            rest -= hit.t;
+            travelled += hit.t;
+            if let Some((seen, _)) =
+                self.meet_volume(self.object(&hit), &self.arrival(&hit, &ray), &mut inside)
+            {
+                if !matches!(seen, Seen::Void) || result.is_blocked() {
+                    return Transmitted::BLOCKED;
+                }
+                ray = Ray::past(point, ray.direction);
+                continue;
+            }
             match self.pass(&hit, &ray, target) {
                 Pass::Straight(share, only) => {
                     result = result.times(share, only);
@@ -144,8 +165,8 @@ impl World {
         target.sun?;
         let arrival = self.arrival(hit, ray);
         let (direction, share) = solid.refract(&arrival)?;
-        let inside = if arrival.at_front() { Rgb::ONE } else { (-solid.extinction() * hit.t).exp() };
-        Some((direction, inside * share))
+        let before = solid.extinction_before(&arrival).map_or(Rgb::ONE, |e| (-e * hit.t).exp());
+        Some((direction, before * share))
     }
 
     fn pass(&self, hit: &Hit, ray: &Ray, target: &Target) -> Pass<'_> {
@@ -166,9 +187,29 @@ impl World {
                 None => Pass::Straight(Rgb::ZERO, false),
             },
             Material::Dielectric(solid) => Pass::Refracted(solid),
+            Material::Varying(varying) => self.pass_varying(varying, arrival, target),
+            Material::Table(table) if table.is_proxy() => {
+                Pass::Straight(Rgb::ONE, table.rule == PeakRule::Split)
+            }
             Material::Table(table) => Pass::Straight(table.straight(arrival, target.is_direct), true),
             material => Pass::Straight(material.straight(arrival, target.is_direct), false),
         }
+    }
+
+    /// The mean of what a mixture's materials let through straight.
+    fn pass_varying(&self, varying: &Varying, arrival: &Arrival, target: &Target) -> Pass<'_> {
+        let (mut sum, mut only_by_shadow_rays) = (Rgb::ZERO, false);
+        varying.each(&arrival.ray_state(), &mut |share, id, modulation| {
+            let pass = match id {
+                None => Pass::Straight(Rgb::ONE, false),
+                Some(id) => self.pass_material(self.material(id), &arrival.modulated(modulation), target),
+            };
+            if let Pass::Straight(passed, only) = pass {
+                sum += passed * share;
+                only_by_shadow_rays |= only;
+            }
+        });
+        Pass::Straight(sum, only_by_shadow_rays)
     }
 
     fn pass_alternate(&self, alternate: Alternate, arrival: &Arrival, target: &Target) -> Pass<'_> {

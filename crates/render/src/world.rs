@@ -6,27 +6,40 @@ use crate::WorldOptions;
 use crate::accel::{Accel, Hit};
 use crate::guide::Guide;
 use crate::light::{DistantSources, Lamps};
-use crate::material::{Alternate, Arrival, Emitter, EmitterKind, Material, MaterialId};
-use crate::shapes::Ray;
+use crate::material::{
+    Air, Alternate, Arrival, Emitter, EmitterKind, Inside, Material, MaterialId, Prism, fault_of,
+};
+use crate::shapes::{COINCIDENT, Ray, SmoothMesh};
 use std::sync::atomic::{AtomicU64, Ordering};
 use sunpeak_bsdf::PeakRule;
 use sunpeak_core::{Result, Rgb, Vec3};
 use sunpeak_scene::Scene;
+
+/// Materials that show others in their place: so many in a row.
+const MAX_ALTERNATES: usize = 100;
 
 /// Surfaces in one hierarchy, materials and emitters. Immutable, shared by all threads.
 #[derive(Debug)]
 pub struct World {
     pub(crate) accel: Accel,
     pub(crate) objects: Vec<Object>,
+    /// Of each object: which surface of the scene it is.
+    pub(crate) surfaces: Vec<u32>,
     pub(crate) materials: Vec<Material>,
     pub(crate) distant: DistantSources,
     pub(crate) lamps: Lamps,
     /// Objects that are planar mirrors.
     pub(crate) mirrors: Vec<u32>,
+    /// Objects that are prisms, and a point of each.
+    pub(crate) prisms: Vec<(u32, Vec3)>,
     pub(crate) rule: PeakRule,
     pub(crate) rays: AtomicU64,
     /// Where diffuse surfaces look for light, if there are shades.
     pub(crate) guide: Option<Guide>,
+    /// Meshes with normals at their vertices.
+    pub(crate) meshes: Vec<SmoothMesh>,
+    /// Is there mist or antimatter?
+    pub(crate) has_volumes: bool,
 }
 
 /// A surface of the scene.
@@ -45,6 +58,8 @@ pub(crate) enum Facing {
     Flat(Vec3),
     /// From an analytic shape.
     Curved(u32),
+    /// Interpolated between a triangle's corners.
+    Smooth { mesh: u32, triangle: u32 },
 }
 
 /// What a path meets at a surface.
@@ -99,13 +114,108 @@ impl World {
         let normal = match self.object(hit).facing {
             Facing::Flat(normal) => normal,
             Facing::Curved(shape) => self.accel.shape(shape).normal(point),
+            Facing::Smooth { mesh, triangle } => {
+                let (flat, smooth) = self.meshes[mesh as usize].normals_at(triangle, point);
+                return Arrival::new(point, flat, ray.direction).smoothed(smooth);
+            }
         };
-        Arrival { point, normal, direction: ray.direction }
+        Arrival { distance: hit.t, travelled: hit.t, ..Arrival::new(point, normal, ray.direction) }
+    }
+
+    /// What a path that is in these volumes meets; they change where it passes a boundary. `way` is how far the path has come before:
+    /// since it was last scattered, and since the camera [m]. `choose` gives random numbers in [0, 1), for mixtures.
+    pub(crate) fn meet(
+        &self,
+        hit: &Hit,
+        ray: &Ray,
+        view: bool,
+        inside: &mut Inside,
+        way: [f64; 2],
+        choose: &mut dyn FnMut() -> f64,
+    ) -> (Seen<'_>, Arrival) {
+        let mut arrival = self.arrival(hit, ray);
+        arrival.distance += way[0];
+        arrival.travelled += way[1];
+        let object = self.object(hit);
+        let (seen, mut arrival) = match self.meet_volume(object, &arrival, inside) {
+            Some(met) => met,
+            None => (self.seen(object.material, &arrival, view), arrival),
+        };
+        (self.resolved(seen, &mut arrival, view, choose), arrival)
+    }
+
+    /// Boundaries of volumes and what they hide; `None` for all other surfaces.
+    pub(crate) fn meet_volume(
+        &self,
+        object: &Object,
+        arrival: &Arrival,
+        inside: &mut Inside,
+    ) -> Option<(Seen<'_>, Arrival)> {
+        if !self.has_volumes {
+            return None;
+        }
+        let (id, at_front) = (object.material, arrival.at_front());
+        match self.material(id) {
+            Material::Antimatter(antimatter) if !at_front && inside.is_in_clipped(id) => {
+                // The ray has come into a solid that does not exist here, and now it does: the cut face.
+                if antimatter.face.is_some() {
+                    return Some((self.alternate(antimatter.face), arrival.turned()));
+                }
+                inside.leave(id);
+            }
+            Material::Mist(_) | Material::Antimatter(_) if at_front => inside.enter(id),
+            Material::Mist(_) | Material::Antimatter(_) => inside.leave(id),
+            _ => {
+                let clips = |volume: &MaterialId| match self.material(*volume) {
+                    Material::Antimatter(antimatter) => antimatter.clipped.contains(&id),
+                    _ => false,
+                };
+                let clipping = inside.volumes().find(clips)?;
+                inside.cross_clipped(clipping, at_front);
+            }
+        }
+        Some((Seen::Void, *arrival))
+    }
+
+    /// The air in these volumes, if there is mist.
+    pub(crate) fn air(&self, inside: &Inside) -> Option<Air> {
+        if inside.is_empty() {
+            return None;
+        }
+        Air::of(inside.volumes().filter_map(|volume| match self.material(volume) {
+            Material::Mist(mist) => Some(mist),
+            _ => None,
+        }))
+    }
+
+    /// The mists that a point is in: closed surfaces that a ray from there leaves more often than it enters them.
+    pub(crate) fn inside_at(&self, ray: &Ray) -> Inside {
+        let mut inside = Inside::default();
+        if !self.has_volumes {
+            return inside;
+        }
+        let mut crossings: Vec<(Hit, bool)> = Vec::new();
+        self.accel.each_crossing(ray, f64::INFINITY, |hit| {
+            let is_mist = matches!(self.material(self.object(&hit).material), Material::Mist(_));
+            let is_seam = |(h, _): &(Hit, bool)| h.object == hit.object && (h.t - hit.t).abs() <= COINCIDENT;
+            if is_mist && !crossings.iter().any(is_seam) {
+                crossings.push((hit, self.arrival(&hit, ray).at_front()));
+            }
+            true
+        });
+        crossings.sort_by(|(a, _), (b, _)| a.t.total_cmp(&b.t));
+        // From far away back to the point.
+        for (hit, at_front) in crossings.into_iter().rev() {
+            let volume = self.object(&hit).material;
+            if at_front { inside.leave(volume) } else { inside.enter(volume) }
+        }
+        inside
     }
 
     /// What a path sees. `view`: it comes from the camera and met only mirrors and clear panes.
-    pub(crate) fn seen(&self, object: &Object, arrival: &Arrival, view: bool) -> Seen<'_> {
-        match self.material(object.material) {
+    /// Patterns, textures and mixtures are still to be [`Self::resolved`].
+    fn seen(&self, id: MaterialId, arrival: &Arrival, view: bool) -> Seen<'_> {
+        match self.material(id) {
             Material::Emitter(emitter) => match emitter.kind {
                 EmitterKind::Illum { alternate } if view || !arrival.at_front() => self.alternate(alternate),
                 _ => Seen::Emitter(emitter),
@@ -114,18 +224,71 @@ impl World {
                 Some(alternate) if view || !arrival.at_front() || self.is_transparent(alternate) => {
                     self.alternate(alternate)
                 }
-                _ => Seen::Surface(self.material(object.material)),
+                _ => Seen::Surface(self.material(id)),
             },
+            Material::Table(table) if table.is_passed(arrival, view) => Seen::Void,
             material => Seen::Surface(material),
         }
     }
 
-    /// Reflectance of an object that is a mirror.
-    pub(crate) fn mirror_reflectance(&self, object: u32) -> Rgb {
-        match self.material(self.objects[object as usize].material) {
+    /// Evaluate patterns, textures and mixtures; they change the arrival.
+    fn resolved<'w>(
+        &'w self,
+        mut seen: Seen<'w>,
+        arrival: &mut Arrival,
+        view: bool,
+        choose: &mut dyn FnMut() -> f64,
+    ) -> Seen<'w> {
+        // What varies may show an alternate that varies, but not for ever.
+        for _ in 0..MAX_ALTERNATES {
+            let Seen::Surface(Material::Varying(varying)) = seen else { return seen };
+            let (material, modulation) = varying.at(&arrival.ray_state(), choose);
+            *arrival = arrival.modulated(&modulation);
+            seen = material.map_or(Seen::Void, |id| self.seen(id, arrival, view));
+        }
+        Seen::Void
+    }
+
+    /// Reflectance of an object that is a mirror, where a ray meets it.
+    pub(crate) fn mirror_reflectance(&self, hit: &Hit, ray: &Ray) -> Rgb {
+        match self.material(self.object(hit).material) {
             Material::Mirror(mirror) => mirror.reflectance,
+            Material::Varying(varying) => {
+                let mut sum = Rgb::ZERO;
+                varying.each(&self.arrival(hit, ray).ray_state(), &mut |share, id, modulation| {
+                    if let Some(Material::Mirror(mirror)) = id.map(|id| self.material(id)) {
+                        sum += mirror.reflectance * modulation.tint * share;
+                    }
+                });
+                sum
+            }
             _ => Rgb::ZERO,
         }
+    }
+
+    /// The prism that an object is.
+    pub(crate) fn prism(&self, object: u32) -> Option<&Prism> {
+        let id = self.objects[object as usize].material;
+        let prism = |id: MaterialId| match self.material(id) {
+            Material::Prism(prism) => Some(prism),
+            _ => None,
+        };
+        match self.material(id) {
+            Material::Varying(varying) => varying.materials().into_iter().find_map(prism),
+            _ => prism(id),
+        }
+    }
+
+    /// What is wrong with an expression of the scene, if an evaluation has found that out.
+    pub(crate) fn check_expressions(&self) -> Result<()> {
+        let fault = |material: &Material| match material {
+            Material::Varying(varying) => varying.fault(),
+            Material::Emitter(emitter) => fault_of(&emitter.patterns),
+            Material::Function(function) => function.field.fault(),
+            Material::Prism(prism) => prism.field.fault(),
+            _ => None,
+        };
+        self.materials.iter().find_map(fault).map_or(Ok(()), Err)
     }
 
     fn alternate(&self, alternate: Alternate) -> Seen<'_> {

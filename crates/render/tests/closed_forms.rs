@@ -251,3 +251,20 @@ fn of_two_panes_at_the_same_place_one_counts() {
     let seen = radiance(&world, Vec3::ZERO, Vec3::new(0.0, 0.1, 1.0), &samples(1 << 14));
     assert_close("sky", seen, glass_transmittance(0.1f64.atan()), 5e-3);
 }
+
+#[test]
+fn ambient_light_stands_for_what_lies_past_the_last_bounce() {
+    // Between walls of reflectance rho every diffuse bounce dims what stands for the rest by rho.
+    let rho = 0.6_f64;
+    let dark = world(&white_box(rho, ""));
+    let inside = Vec3::new(1.0, 1.0, 1.0);
+    for bounces in 0..3 {
+        let ambient = Rgb::new(2.0, 1.0, 0.5);
+        let options = RenderOptions { max_bounces: Some(bounces), ambient, ..samples(16) };
+        let expected = 2.0 * rho.powi(bounces as i32);
+        let seen = radiance(&dark, inside, Vec3::new(0.3, 0.4, 0.5), &options);
+        assert_close("radiance", seen, expected * rho, 1e-9);
+        assert!((seen.z - seen.x / 4.0).abs() < 1e-12, "{seen}");
+        assert_close("irradiance", irradiance(&dark, inside, UP, &options), expected * PI, 1e-9);
+    }
+}

@@ -1,7 +1,8 @@
 //! The Radiance scene language, views and pictures. It knows files; it does not know how light moves.
 //!
 //! A scene file goes through three layers: [`raw`] reads words and counts, `command` does the `!commands` (in this
-//! process, never in a shell unless that is allowed), `interpret` looks names up and checks arguments.
+//! process, never in a shell unless that is allowed), `interpret` looks names up and checks arguments. Octrees and meshes that
+//! a scene names are read by `compiled`, and become surfaces of the scene.
 //!
 //! ```
 //! use sunpeak_scene::{LoadOptions, Scene};
@@ -11,8 +12,11 @@
 //! # Ok::<(), sunpeak_core::Error>(())
 //! ```
 
+mod check;
 mod command;
+mod compiled;
 mod disc_coverage;
+mod field;
 mod files;
 mod interpret;
 mod load;
@@ -21,11 +25,15 @@ pub mod raw;
 mod scene;
 mod view;
 
+pub use check::SceneCheck;
+pub use compiled::{OctreeFile, decode_octree};
 pub use disc_coverage::disc_coverage;
+pub use field::{DataArray, Field, RayState, Spectrum};
 pub use files::LoadOptions;
-pub use load::load_primitives;
+pub use load::{Source, load_primitives};
 pub use picture::{BlockErrors, ExactSource, Picture};
 pub use scene::{
-    BsdfMaterial, Material, Modifier, ModifierId, ModifierKind, Pattern, Scene, Shape, Surface, Ward,
+    Anisotropy, BsdfMaterial, FunctionMaterial, FunctionValue, Material, Medium, Mesh, Modifier, ModifierId,
+    ModifierKind, Pattern, Scene, Shape, Surface, Ward,
 };
 pub use view::{Camera, PixelRay, View, ViewKind, ViewRay};

@@ -9,14 +9,36 @@ use crate::{
 use std::path::{Path, PathBuf};
 use sunpeak_core::{Location, Result};
 
+/// Where a part of a scene comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// A scene file, or with `!` before it a command.
+    File(PathBuf),
+    /// A text that is at hand.
+    Text {
+        /// What messages call it.
+        name: String,
+        /// The scene text.
+        text: Vec<u8>,
+        /// The folder where files that it names are looked for.
+        directory: PathBuf,
+    },
+}
+
 impl Scene {
     /// Read scene files, in order: a material serves the files after its own too. A name that begins with `!` is
     /// a command.
     pub fn load(files: &[PathBuf], options: &LoadOptions) -> Result<Self> {
+        let sources: Vec<_> = files.iter().cloned().map(Source::File).collect();
+        Self::load_sources(&sources, options)
+    }
+
+    /// Read files and texts, in order.
+    pub fn load_sources(sources: &[Source], options: &LoadOptions) -> Result<Self> {
         let mut expander = Expander::new(options);
         let mut interpreter = Interpreter::new(options);
-        for file in files {
-            read_into(&mut interpreter, load_file(&mut expander, file, options)?)?;
+        for source in sources {
+            read_into(&mut interpreter, load_source(&mut expander, source, options)?)?;
         }
         Ok(finish(interpreter, expander))
     }
@@ -33,13 +55,27 @@ impl Scene {
 }
 
 /// The primitives of scene files after all commands in them are done, before anything is made of them.
-pub fn load_primitives(files: &[PathBuf], options: &LoadOptions) -> Result<Vec<Primitive>> {
+pub fn load_primitives(sources: &[Source], options: &LoadOptions) -> Result<Vec<Primitive>> {
     let mut expander = Expander::new(options);
     let mut primitives = Vec::new();
-    for file in files {
-        primitives.extend(load_file(&mut expander, file, options)?);
+    for source in sources {
+        primitives.extend(load_source(&mut expander, source, options)?);
     }
     Ok(primitives)
+}
+
+pub(crate) fn load_source(
+    expander: &mut Expander,
+    source: &Source,
+    options: &LoadOptions,
+) -> Result<Vec<Primitive>> {
+    match source {
+        Source::File(file) => load_file(expander, file, options),
+        Source::Text { name, text, directory } => {
+            let items = expander.parse(text, name, directory)?;
+            expander.expand(items, &options.base())
+        }
+    }
 }
 
 fn load_file(expander: &mut Expander, file: &Path, options: &LoadOptions) -> Result<Vec<Primitive>> {

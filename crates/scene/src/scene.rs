@@ -1,6 +1,7 @@
 //! What scene files say: surfaces and modifiers, in file order, with positions for error messages.
 
-use std::path::PathBuf;
+use crate::field::{Field, RayState, Spectrum};
+use std::{path::PathBuf, sync::Arc};
 use sunpeak_core::{Location, Rgb, Vec3};
 use sunpeak_sky::SkyDistribution;
 
@@ -32,18 +33,43 @@ pub struct Modifier {
     pub location: Location,
 }
 
-/// A material or a pattern.
+/// What a modifier is.
 #[derive(Clone, Debug)]
 pub enum ModifierKind {
     /// Says how a surface reflects, transmits or emits.
     Material(Material),
-    /// Multiplies what the material above it says, by direction or place.
+    /// Multiplies what the material says, by direction or place.
     Pattern(Pattern),
+    /// Bends the normal: adds its three values, in its own frame, to the unit normal.
+    Texture(Arc<Field>),
+    /// One modifier or another: `fore` with the share that the weight's value says, 0 to 1, `back` with the rest.
+    Mixture {
+        /// Foreground; `None` is `void`.
+        fore: Option<ModifierId>,
+        /// Background; `None` is `void`.
+        back: Option<ModifierId>,
+        /// Share of the foreground.
+        weight: Arc<Field>,
+    },
 }
 
-/// Patterns that are understood.
+/// Patterns.
 #[derive(Clone, Debug)]
 pub enum Pattern {
+    /// The same everywhere: a spectrum, in three channels.
+    Uniform(Rgb),
+    /// One value of a field for all channels.
+    Bright(Arc<Field>),
+    /// Three values of a field.
+    Color(Arc<Field>),
+    /// A spectrum over place or direction, in three channels. The field's function is asked for each wavelength: with the
+    /// wavelength alone, or with the data's value and the wavelength.
+    Spectral {
+        /// The function, and the data without its last coordinate.
+        field: Arc<Field>,
+        /// Wavelengths and their weights.
+        spectrum: Spectrum,
+    },
     /// `brightfunc … skybr skybright.cal` or `skybright perezlum.cal`: the sky over the ray's direction.
     Sky(SkyDistribution),
 }
@@ -80,6 +106,42 @@ pub enum Material {
         /// Hartmann's constant, dispersion.
         hartmann: f64,
     },
+    /// The boundary between two dielectrics.
+    Interface {
+        /// Behind the surface.
+        inside: Medium,
+        /// Before it.
+        outside: Medium,
+    },
+    /// Ashikhmin and Shirley's anisotropic highlights over a diffuse surface.
+    Ashikhmin {
+        /// Diffuse reflectance.
+        diffuse: Rgb,
+        /// Specular reflectance at normal incidence.
+        specular: Rgb,
+        /// Exponents along and across the orientation: larger is smoother.
+        powers: [f64; 2],
+        /// Along what the first exponent lies, world axes, not normalised; to be projected on the surface.
+        orientation: Vec3,
+    },
+    /// A volume of air that scatters; its surface is invisible.
+    Mist {
+        /// Names of light sources that Radiance looks for in it.
+        sources: Vec<String>,
+        /// Extinction: what is lost of a ray in one metre [1/m].
+        extinction: Rgb,
+        /// Share of that which is scattered.
+        albedo: Rgb,
+        /// Mean cosine of the scattering angle (Henyey and Greenstein's g).
+        eccentricity: f64,
+    },
+    /// A volume in which surfaces of some modifiers do not exist.
+    Antimatter {
+        /// The modifiers.
+        clipped: Vec<ModifierId>,
+        /// What the cut face looks like; `None` leaves it open.
+        face: Option<ModifierId>,
+    },
     /// A planar mirror that makes virtual sources; `alternate` is shown to rays that are not shadow rays.
     Mirror {
         /// Reflectance.
@@ -115,17 +177,126 @@ pub enum Material {
     },
     /// A measured or simulated BSDF.
     Bsdf(BsdfMaterial),
+    /// Diffuse, and scattering by a function of the direction to the light.
+    Function(Box<FunctionMaterial>),
+    /// Sends rays on in other directions.
+    Prism {
+        /// For each way four expressions: the share, and the direction of the ray that goes on.
+        field: Arc<Field>,
+        /// One or two.
+        ways: usize,
+    },
 }
 
-/// Arguments shared by plastic, metal and trans: the isotropic Ward model.
+/// A transparent medium.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Medium {
+    /// Transmission per unit of length (one metre).
+    pub transmission: Rgb,
+    /// Index of refraction.
+    pub index: f64,
+}
+
+/// Arguments shared by plastic, metal and trans, and by plastic2, metal2 and trans2: Ward's model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ward {
     /// Diffuse colour (colour of everything for metal).
     pub color: Rgb,
     /// Fraction reflected specularly.
     pub specularity: f64,
-    /// RMS slope of the facets.
+    /// RMS slope of the facets; along the orientation, if there is one.
     pub roughness: f64,
+    /// Set for plastic2, metal2 and trans2.
+    pub anisotropy: Option<Anisotropy>,
+}
+
+/// A second roughness.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Anisotropy {
+    /// Along what the first roughness lies, world axes, not normalised; to be projected on the surface.
+    pub orientation: Vec3,
+    /// RMS slope across the orientation.
+    pub roughness: f64,
+}
+
+/// `plasfunc`, `metfunc`, `transfunc`, `plasdata`, `metdata`, `transdata`, `BRTDfunc`.
+#[derive(Clone, Debug)]
+pub struct FunctionMaterial {
+    /// Colour before patterns (white for `BRTDfunc`, whose functions see the pattern alone).
+    pub color: Rgb,
+    /// Diffuse reflectance of front and back.
+    pub diffuse: [Rgb; 2],
+    /// Diffuse transmittance.
+    pub diffuse_transmission: Rgb,
+    /// What the function is multiplied with for light on the ray's side.
+    pub reflection: Rgb,
+    /// And for light on the other side.
+    pub transmission: Rgb,
+    /// Do patterns multiply the reflected function as well?
+    pub is_metal: bool,
+    /// Is the surface turned to face the ray before the function sees it?
+    pub is_turned: bool,
+    /// Are the first six expressions what is mirrored, and what goes straight on?
+    pub has_straight: bool,
+    /// How the field is asked for a value.
+    pub value: FunctionValue,
+    /// The functions.
+    pub field: Arc<Field>,
+}
+
+/// A scattering function [1/sr] of the direction to the light and its solid angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FunctionValue {
+    /// One expression for all channels.
+    Grey(usize),
+    /// An expression for each channel; `None` is 0.
+    Color([Option<usize>; 3]),
+    /// So many coordinates of the field's data, the first expressions; the next one takes the data's value first.
+    Data(usize),
+}
+
+impl FunctionMaterial {
+    /// A black surface.
+    pub(crate) fn new(field: Arc<Field>, value: FunctionValue) -> Self {
+        Self {
+            color: Rgb::ONE,
+            diffuse: [Rgb::ZERO; 2],
+            diffuse_transmission: Rgb::ZERO,
+            reflection: Rgb::ZERO,
+            transmission: Rgb::ZERO,
+            is_metal: false,
+            is_turned: true,
+            has_straight: false,
+            value,
+            field,
+        }
+    }
+
+    /// The value for light from a unit vector, away from the surface, of this solid angle [sr]; never negative.
+    pub fn evaluate(&self, ray: &RayState, direction: Vec3, solid_angle: f64) -> Rgb {
+        let field = &self.field;
+        let d = field.local_direction(direction);
+        let light = [d.x, d.y, d.z, solid_angle];
+        let value = match self.value {
+            FunctionValue::Grey(root) => Rgb::splat(field.call(ray, root, &light).unwrap_or(0.0)),
+            FunctionValue::Color(roots) => Rgb::from_array(
+                roots.map(|root| root.and_then(|root| field.call(ray, root, &light)).unwrap_or(0.0)),
+            ),
+            FunctionValue::Data(dimensions) => {
+                let mut point = Vec::with_capacity(dimensions);
+                point.extend((0..dimensions).filter_map(|root| field.call(ray, root, &light)));
+                match field.arrays().first() {
+                    Some(data) if point.len() == dimensions => {
+                        let value = data.interpolate(&point);
+                        let arguments = [value, d.x, d.y, d.z, solid_angle];
+                        Rgb::splat(field.call(ray, dimensions, &arguments).unwrap_or(0.0))
+                    }
+                    _ => Rgb::ZERO,
+                }
+            }
+        };
+        value.max(Rgb::ZERO)
+    }
 }
 
 /// `BSDF` and `aBSDF`.
@@ -200,6 +371,8 @@ pub enum Shape {
         /// Outer radius [m].
         outer_radius: f64,
     },
+    /// Triangles that share vertices.
+    Mesh(Mesh),
     /// A cone of directions at infinity.
     Source {
         /// Unit vector towards it.
@@ -207,4 +380,18 @@ pub enum Shape {
         /// Full angle [deg].
         angle_deg: f64,
     },
+}
+
+/// A mesh in world axes; what one file holds is shared by the surfaces that its materials make.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    /// Places of the vertices.
+    pub vertices: Arc<[Vec3]>,
+    /// Unit normal at each vertex, zero where there is none; empty if there are none at all. Between them the normal is
+    /// interpolated in triangles whose corners all have one.
+    pub normals: Arc<[Vec3]>,
+    /// Local coordinates (Radiance's `Lu`, `Lv`) at each vertex; empty if there are none.
+    pub local: Arc<[[f64; 2]]>,
+    /// Indices of vertices, counter-clockwise at the front.
+    pub triangles: Vec<[u32; 3]>,
 }

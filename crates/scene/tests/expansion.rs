@@ -1,7 +1,7 @@
 //! Commands done inside make what Radiance's programs print: our own scene against the recorded output of `xform -e`.
 
 use std::path::{Path, PathBuf};
-use sunpeak_scene::{LoadOptions, load_primitives, raw::Primitive};
+use sunpeak_scene::{LoadOptions, Source, load_primitives, raw::Primitive};
 
 fn data() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data")
@@ -9,7 +9,7 @@ fn data() -> PathBuf {
 
 fn in_folder(folder: &str, file: &str) -> Vec<Primitive> {
     let options = LoadOptions { cwd: Some(data().join(folder)), ..LoadOptions::default() };
-    load_primitives(&[PathBuf::from(file)], &options).expect("a scene")
+    load_primitives(&[Source::File(PathBuf::from(file))], &options).expect("a scene")
 }
 
 /// Radiance prints 12 digits of geometry, and 6 of what scales with a power.
@@ -37,7 +37,7 @@ fn rounded_boxes_are_closed() {
     // The faces of a closed surface add up to no vector, and enclose the volume of a rounded box up to its facets.
     let text = "!genbox m b 2 3 4 -r .5 -n 64";
     let options = LoadOptions::default();
-    let faces = load_primitives(&[PathBuf::from(text)], &options).expect("a box");
+    let faces = load_primitives(&[Source::File(PathBuf::from(text))], &options).expect("a box");
     let (mut area, mut volume) = (glam::DVec3::ZERO, 0.0);
     for face in &faces {
         let points: Vec<_> = face.reals.chunks(3).map(glam::DVec3::from_slice).collect();

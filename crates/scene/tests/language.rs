@@ -18,7 +18,7 @@ const BLACK: &str = "void plastic black 0 0 5 0 0 0 0 0\n";
 fn material(scene: &Scene, index: usize) -> &Material {
     match &scene.modifiers[index].kind {
         ModifierKind::Material(material) => material,
-        ModifierKind::Pattern(pattern) => panic!("a pattern: {pattern:?}"),
+        other => panic!("no material: {other:?}"),
     }
 }
 
@@ -26,16 +26,24 @@ fn material(scene: &Scene, index: usize) -> &Material {
 fn materials_have_the_arguments_of_the_manual() {
     let read = scene(
         "void trans t 0 0 7 .1 .2 .3 .04 .05 .6 .7 void glass g 0 0 3 .9 .8 .7 void glass h 0 0 4 .9 .8 .7 1.6
-         void dielectric d 0 0 5 .9 .8 .7 1.5 2 void glow w 0 0 4 1 2 3 -1 void spotlight s 0 0 7 1 2 3 40 0 0 -2",
+         void dielectric d 0 0 5 .9 .8 .7 1.5 2 void glow w 0 0 4 1 2 3 -1 void spotlight s 0 0 7 1 2 3 40 0 0 -2
+         void metal2 m 6 0 1 0 . -s 2 0 6 1 1 1 .9 .1 .3 void ashik2 a 4 1 0 0 . 0 8 .1 .2 .3 .4 .5 .6 7 80
+         void mist f 1 sun 0 3 1 2 3 void antimatter n 2 void t 0 0",
     );
     let expected = [
-        "Trans { ward: Ward { color: DVec3(0.1, 0.2, 0.3), specularity: 0.04, roughness: 0.05 }, transmissivity: 0.6, \
-         specular_transmission: 0.7 }",
+        "Trans { ward: Ward { color: DVec3(0.1, 0.2, 0.3), specularity: 0.04, roughness: 0.05, anisotropy: None }, \
+         transmissivity: 0.6, specular_transmission: 0.7 }",
         "Glass { transmissivity: DVec3(0.9, 0.8, 0.7), index: 1.52 }",
         "Glass { transmissivity: DVec3(0.9, 0.8, 0.7), index: 1.6 }",
         "Dielectric { transmission: DVec3(0.9, 0.8, 0.7), index: 1.5, hartmann: 2.0 }",
         "Glow { radiance: DVec3(1.0, 2.0, 3.0), max_radius: -1.0 }",
         "Spotlight { radiance: DVec3(1.0, 2.0, 3.0), angle_deg: 40.0, axis: DVec3(0.0, 0.0, -2.0) }",
+        "Metal(Ward { color: DVec3(1.0, 1.0, 1.0), specularity: 0.9, roughness: 0.1, anisotropy: Some(Anisotropy { \
+         orientation: DVec3(0.0, 2.0, 0.0), roughness: 0.3 }) })",
+        "Ashikhmin { diffuse: DVec3(0.1, 0.2, 0.3), specular: DVec3(0.4, 0.5, 0.6), powers: [7.0, 80.0], orientation: \
+         DVec3(1.0, 0.0, 0.0) }",
+        "Mist { sources: [\"sun\"], extinction: DVec3(1.0, 2.0, 3.0), albedo: DVec3(0.0, 0.0, 0.0), eccentricity: 0.0 }",
+        "Antimatter { clipped: [ModifierId(0)], face: None }",
     ];
     for (i, expected) in expected.iter().enumerate() {
         assert_eq!(&format!("{:?}", material(&read, i)), expected);
@@ -155,13 +163,13 @@ fn degenerate_surfaces_are_left_out_with_a_warning() {
 
 #[test]
 fn what_cannot_be_used_matters_only_when_it_is_used() {
-    let unused = "void colorfunc c 4 1 1 1 . 0 0\nc plastic p 0 0 5 1 1 1 0 0\ninherit alias q p\nvoid plastic z 0 0 4 1 1 1 0\n";
+    let unused = "void specpict c 4 1 1 1 . 0 0\nc plastic p 0 0 5 1 1 1 0 0\ninherit alias q p\nvoid plastic z 0 0 4 1 1 1 0\n";
     let read = scene(unused);
     assert_eq!((read.modifiers.len(), read.warnings.len()), (0, 2));
     let used = message(&format!("{unused}q sphere s 0 0 4 0 0 0 1"));
     assert_eq!(
         used,
-        "t.rad:1:1: colorfunc \"c\": Radiance's \"colorfunc\" is not supported yet (used by sphere \"s\" at t.rad:5:1)"
+        "t.rad:1:1: specpict \"c\": Radiance's \"specpict\" is not supported yet (used by sphere \"s\" at t.rad:5:1)"
     );
 }
 
@@ -178,7 +186,14 @@ fn wrong_texts_are_said_to_be_wrong_and_where() {
         (surface("white source s 0 0 4 0 0 0 1"), "the direction is zero"),
         (surface("white source s 0 0 4 0 0 1 400"), "the angle is 400, expected degrees over 0, up to 360"),
         (surface("black plastic p 0 0 5 1 1 1 0 0 p sphere s 0 0 4 0 0 0 1"), "\"p\" and \"black\" are both materials"),
-        (surface("white instance i 1 a.oct 0 0"), "Radiance's \"instance\" is not supported yet"),
+        (surface("white instance i 1 a.oct 0 0"), "t.rad:3:1: cannot find the file \"a.oct\""),
+        (surface("white mesh m 0 0 0"), "expected a file, a transform if it is to be moved, and no real arguments"),
+        (surface("white mesh m 2 a.rtm -rz 0 0"), "mesh \"m\": bad transform: expected a number after -rz"),
+        (surface("void plastic2 a 4 1 0 0 . 0 6 1 1 1 0 0 .1 a sphere s 0 0 4 0 0 0 1"), "plastic2 \"a\": urough is 0, expected more than"),
+        (surface("void plastic2 a 3 1 0 0 0 6 1 1 1 0 .1 .1 a sphere s 0 0 4 0 0 0 1"), "the last ones ux uy uz and a function file"),
+        (surface("void mist a 0 0 7 1 1 1 1 1 1 1 a sphere s 0 0 4 0 0 0 1"), "the eccentricity is 1, expected -1 to 1"),
+        (surface("void antimatter a 1 b 0 0 a sphere s 0 0 4 0 0 0 1"), "the modifier that is to be clipped, \"b\", is not defined above"),
+        (surface("void interface a 0 0 8 1 1 1 1.5 1 1 1 0 a sphere s 0 0 4 0 0 0 1"), "the index of refraction is 0"),
         (surface("white sphere"), "expected the name of this sphere, found the end of the text"),
         (
             "void plastic p 0 0 4 1 1 1 0 p sphere s 0 0 4 0 0 0 1".into(),
@@ -202,7 +217,27 @@ fn wrong_texts_are_said_to_be_wrong_and_where() {
         ),
         (
             "void brightfunc f 4 skybr skybright.cal -rx 20 0 7 1 1 1 1 0 0 1 f glow g 0 0 4 1 1 1 0 g source s 0 0 4 0 0 1 180".into(),
-            "a sky whose zenith is tilted is not supported yet",
+            "function file: cannot find the file \"skybright.cal\"; looked for skybright.cal",
+        ),
+        (
+            "void colorfunc c 4 Px Pi Pz . 0 0 c plastic p 0 0 5 1 1 1 0 0 p sphere s 0 0 4 0 0 0 1".into(),
+            "t.rad:1:1: colorfunc \"c\": the variable \"Pi\" is not defined (used by",
+        ),
+        (
+            "void brightfunc b 2 A1+A2 . 0 1 3 b plastic p 0 0 5 1 1 1 0 0 p sphere s 0 0 4 0 0 0 1".into(),
+            "the real argument A2 is asked for, but only 1 are given",
+        ),
+        (
+            "void mixfunc m 4 void grey Px . 0 0 m sphere s 0 0 4 0 0 0 1".into(),
+            "\"grey\" that is to be seen instead is not defined above",
+        ),
+        (
+            "void brightdata b 4 noop no.dat . Px 0 0 b plastic p 0 0 5 1 1 1 0 0 p sphere s 0 0 4 0 0 0 1".into(),
+            "data file: cannot find the file \"no.dat\"; looked for no.dat",
+        ),
+        (
+            "void plastic a 0 0 5 1 1 1 0 0 void mixfunc m 4 void a Px . 0 0 m plastic b 0 0 5 1 1 1 0 0 b sphere s 0 0 4 0 0 0 1".into(),
+            "\"b\" and \"m\" are both materials",
         ),
         ("!genbox white b 1 2".into(), "expected genbox material name xsize ysize zsize"),
         ("!xform -t 1 0 no.rad".into(), "xform: expected a number after -t, found \"no.rad\""),

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from sunpeak import InputError, __version__
-from sunpeak.cli import bsdf, demo, glare, render, sky, study, trace
+from sunpeak.cli import bsdf, compat, demo, glare, render, scene, sky, study, trace
 
 EXIT_WRONG_INPUT = 1
 EXIT_INTERRUPTED = 130
@@ -27,9 +27,16 @@ app.command("demo", rich_help_panel="Results")(demo.command)
 app.command("render", rich_help_panel="Results")(render.command)
 app.command("trace", rich_help_panel="Results")(trace.command)
 app.add_typer(glare.app, name="glare", rich_help_panel="Results")
+app.add_typer(scene.app, name="scene", rich_help_panel="Input")
 app.add_typer(bsdf.app, name="bsdf", rich_help_panel="Input")
 app.add_typer(sky.app, name="sky", rich_help_panel="Input")
 app.add_typer(study.app, name="study", rich_help_panel="Results")
+app.command(
+    "compat",
+    help=compat.HELP,
+    rich_help_panel="Radiance's programs",
+    context_settings={"ignore_unknown_options": True, "allow_extra_args": True, "help_option_names": []},
+)(compat.command)
 
 
 def show_version(wanted: bool) -> None:

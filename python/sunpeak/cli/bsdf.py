@@ -7,15 +7,16 @@ import numpy as np
 import typer
 
 from sunpeak.bsdf_plot import Kind, is_picture, plot_bsdf
+from sunpeak.cli.bsdf_fabric import fabric
 from sunpeak.cli.bsdf_show import show
 from sunpeak.cli.options import Quiet
 from sunpeak.cli.output import emit_json, note
 from sunpeak.cli.values import parse_instrument, parse_numbers
-from sunpeak.fabrics import Fabric
 from sunpeak.inspection import inspect
 from sunpeak.scattering import Bsdf, Peak, side_of_ray
 
 app = typer.Typer(no_args_is_help=True, help="Look into a BSDF file.")
+app.command("fabric")(fabric)
 
 File = Annotated[Path, typer.Argument(help="LBNL XML file, or the folder of a split.")]
 Instrument = Annotated[
@@ -72,27 +73,6 @@ def through(
         return
     for (t, p), value in zip(angles, values, strict=True):
         typer.echo(f"{t:g} {p:g} {value:.6f}")
-
-
-@app.command("fabric")
-def fabric(
-    output: Annotated[Path, typer.Option("--output", "-o", help="LBNL XML file to write.")],
-    basis: Annotated[
-        str, typer.Option(help="klems, klems-half, klems-quarter, or t3-1024 … t3-16384, t4-256 …, by number of cells.")
-    ] = "klems",
-    openness: Annotated[float, typer.Option(help="Through transmittance at normal incidence.")] = Fabric.openness,
-    cut_off: Annotated[float, typer.Option(help="Degrees from which nothing goes through.")] = Fabric.cut_off_deg,
-    exponent: Annotated[float, typer.Option(help="Steepness of the fall to the cut-off.")] = Fabric.exponent,
-    scattered: Annotated[float, typer.Option(help="Scattered transmittance.")] = Fabric.scattered,
-    lobe_share: Annotated[float, typer.Option(help="Share of it around the straight direction.")] = Fabric.lobe_share,
-    lobe_sigma: Annotated[float, typer.Option(help="Width of that lobe, projected.")] = Fabric.lobe_sigma,
-    reflectance: Annotated[float, typer.Option(help="Diffuse reflectance.")] = Fabric.reflectance,
-) -> None:
-    """Make a fabric from formulas: T = openness cos(90 deg theta / cut-off)^exponent.
-
-    [dim]$[/dim] [cyan]sunpeak bsdf fabric -o shade.xml --basis t3-4096 --openness 0.03[/cyan]
-    """
-    Fabric(openness, cut_off, exponent, scattered, lobe_share, lobe_sigma, reflectance).write(output, basis)
 
 
 @app.command("split")

@@ -71,11 +71,11 @@ def tables(report: BsdfReport) -> Table:
 
 def hemispherical(report: BsdfReport) -> Table:
     """What passes and what is reflected, by angle of incidence."""
-    theta = tuple(f"{angle.theta_deg:g}°" for angle in report.sides[0].angles) if report.sides else ()
-    table = new_table("Hemispherical values, mean over azimuth", ("side", ""), theta)
-    for side in report.sides:
-        table.add_row(side.side, "passes", *(f"{angle.transmittance.mean:.4f}" for angle in side.angles))
-        table.add_row("", "reflected", *(f"{angle.reflectance.mean:.4f}" for angle in side.angles))
+    headings = tuple(f"{side.side} {what}" for side in report.sides for what in ("passes", "reflects"))
+    table = new_table("Hemispherical values, mean over azimuth", (), ("theta", *headings))
+    for angles in zip(*(side.angles for side in report.sides), strict=True):
+        values = [value.mean for angle in angles for value in (angle.transmittance, angle.reflectance)]
+        table.add_row(f"{angles[0].theta_deg:g}°", *(f"{value:.4f}" for value in values))
     return table
 
 

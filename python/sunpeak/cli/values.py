@@ -44,6 +44,17 @@ def parse_percent(text: str) -> float:
     return percent / 100
 
 
+def parse_share(text: str) -> float:
+    """`3%` or `0.03` as 0.03."""
+    try:
+        share = float(text.strip().removesuffix("%")) / (100 if text.strip().endswith("%") else 1)
+    except ValueError as error:
+        raise typer.BadParameter(f"{text!r}; expected a share, as in 3% or 0.03") from error
+    if not 0 <= share <= 1:
+        raise typer.BadParameter(f"{text!r}; expected a share of the light, from 0 to 100%, as in 3% or 0.03")
+    return share
+
+
 def parse_goal(text: str) -> float | Literal["class"] | tuple[Literal["dgp", "ev"], float]:
     """`1` or `1%` as 0.01; `class`; `dgp:0.005`; `ev:1%` as `("ev", 0.01)`."""
     kind, colon, value = text.strip().partition(":")

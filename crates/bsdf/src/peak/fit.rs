@@ -1,6 +1,6 @@
 //! Base and height of a smooth lobe by least squares, with the peak's flux left open.
 
-use super::neighbourhood::Neighbourhood;
+use super::neighbourhood::{Neighbourhood, Region};
 
 /// `b + a g` around a peak: what was found, and what its error at a cell follows from.
 #[derive(Clone, Copy, Debug, Default)]
@@ -29,16 +29,17 @@ impl Fit {
     /// The core's excess over the fit, over the core's share of it, is the peak T; its tails are taken out of the cells around,
     /// which depend on the fit itself: they become part of the two regressors.
     pub fn new(n: &Neighbourhood, values: &[f32], at_core: &[f64], around: &[f64]) -> Self {
+        let Region { core, fringe, core_share } = &n.region;
         let over_core = |f: &dyn Fn(usize) -> f64| -> f64 {
-            n.core.iter().enumerate().map(|(i, b)| f(i) * b.cell.projected_solid_angle).sum()
+            core.iter().enumerate().map(|(i, b)| f(i) * b.cell.projected_solid_angle).sum()
         };
-        let share = n.core_share.max(f64::MIN_POSITIVE);
-        let flux = over_core(&|i| f64::from(values[n.core[i].cell.index])) / share;
+        let share = core_share.max(f64::MIN_POSITIVE);
+        let flux = over_core(&|i| f64::from(values[core[i].cell.index])) / share;
         let (area, lobe) = (over_core(&|_| 1.0) / share, over_core(&|i| at_core[i]) / share);
         let mut sums = [0.0; 6]; // of uu, uv, vv, uy, vy, yy, weighted
         let (mut weights, mut data, mut squares) = (0.0, 0.0, 0.0);
         for (i, (&(cell, w), &g)) in n.around.iter().zip(around).enumerate() {
-            let tail = n.fringe.get(i).map_or(0.0, |b| b.share / b.cell.projected_solid_angle);
+            let tail = fringe.get(i).map_or(0.0, |b| b.share / b.cell.projected_solid_angle);
             let value = f64::from(values[cell.index]);
             let (u, v, y) = (1.0 - area * tail, g - lobe * tail, value - flux * tail);
             for (sum, term) in sums.iter_mut().zip([u * u, u * v, v * v, u * y, v * y, y * y]) {

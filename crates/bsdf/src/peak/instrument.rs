@@ -69,14 +69,15 @@ pub fn shares(table: &Table, columns: &Columns, column: usize, cells: &[Cell], s
     }
     // Six standard deviations, and the cells' own extent.
     let reach = 6.0 * spread.sigma() + 2.0 * width;
-    let near = |cell: &Cell| (table.point(cell, [0.5, 0.5]) - middle).length() < reach;
+    let near: Vec<bool> =
+        cells.iter().map(|cell| (table.point(cell, [0.5, 0.5]) - middle).length() < reach).collect();
     let shape = Shape { sigma: spread.sigma(), in_angle: matches!(spread, Spread::Angle(_)) };
-    let inside: Vec<&Cell> = cells.iter().filter(|c| near(c)).collect();
+    let inside: Vec<&Cell> = cells.iter().zip(&near).filter(|(_, near)| **near).map(|(c, _)| c).collect();
     let rule = RULES[if spread.sigma() < 1.5 * width { 2 } else { 1 }];
     let averages = distances(table, columns, column, inside.iter().copied(), rule);
     let mut fluxes = inside.iter().zip(&averages).map(|(c, d)| c.projected_solid_angle * d.average(shape));
     let found: Vec<f64> =
-        cells.iter().map(|c| if near(c) { fluxes.next().unwrap_or(0.0) } else { 0.0 }).collect();
+        near.into_iter().map(|near| if near { fluxes.next().unwrap_or(0.0) } else { 0.0 }).collect();
     let sum: f64 = found.iter().sum();
     found.into_iter().map(|f| f / sum.max(f64::MIN_POSITIVE)).collect()
 }

@@ -5,21 +5,17 @@
 //! is multiplied by the column's value over the interpolant's mean, so that the flux of each cell is exact; where a
 //! column has no peak it is zero.
 
+use super::colors::Colors;
 use crate::{basis::AngleBasis, table::Columns};
-use glam::{DVec2, Vec3};
+use glam::DVec2;
 use std::f64::consts::PI;
 use sunpeak_core::{Rgb, luminance, warp::disk_to_square};
 
 /// Values of all columns, and the factors that keep their means.
 #[derive(Debug)]
 pub struct ThroughMap {
-    /// Three channels in 32 bits, as the tables themselves have them.
-    values: Vec<Vec3>,
-    factors: Vec<Vec3>,
-    /// By how much the interpolant bends at each column: second differences, luminous.
-    bends: Vec<f32>,
-    /// Where the peak may end within a column, the largest luminous value there or next door; elsewhere 0.
-    edges: Vec<f32>,
+    values: Colors,
+    factors: Colors,
 }
 
 /// Share of the second difference by which a smooth function can depart from the scaled interpolant: a parabola departs by
@@ -29,74 +25,76 @@ const BEND_SHARE: f64 = 0.5;
 impl ThroughMap {
     /// Nothing goes through.
     pub fn none() -> Self {
-        Self { values: Vec::new(), factors: Vec::new(), bends: Vec::new(), edges: Vec::new() }
+        Self { values: Colors::new(&[]), factors: Colors::new(&[]) }
     }
 
     /// From the mean of each column.
-    pub fn new(columns: &Columns, values: Vec<Rgb>) -> Self {
+    pub fn new(columns: &Columns, values: &[Rgb]) -> Self {
         if values.iter().all(|v| *v == Rgb::ZERO) {
             return Self::none();
         }
-        let values: Vec<Vec3> = values.iter().map(|v| v.min(Rgb::splat(f32::MAX.into())).as_vec3()).collect();
+        let values = Colors::new(values);
         let factor = |c: usize| {
-            let (value, mean) = (values[c].as_dvec3(), mean(columns, &values, c));
+            let (value, mean) = (values.at(c), mean(columns, &values, c));
             let scaled = value / mean.max(Rgb::splat(f64::MIN_POSITIVE));
-            Rgb::select(mean.cmpgt(Rgb::ZERO), scaled, Rgb::ZERO).as_vec3()
+            Rgb::select(mean.cmpgt(Rgb::ZERO), scaled, Rgb::ZERO)
         };
-        let each = || 0..values.len();
-        let factors = each().map(factor).collect();
-        let bends = each().map(|c| bend(columns, &values, c) as f32).collect();
-        let edges = each().map(|c| edge(columns, &values, c) as f32).collect();
-        Self { values, factors, bends, edges }
+        let factors: Vec<Rgb> = (0..values.len()).map(factor).collect();
+        Self { factors: Colors::new(&factors), values }
     }
 
     /// The mean over a column.
     pub fn value(&self, column: usize) -> Rgb {
-        self.values.get(column).map_or(Rgb::ZERO, |v| v.as_dvec3())
+        if self.is_none() { Rgb::ZERO } else { self.values.at(column) }
+    }
+
+    /// Memory that it takes [bytes].
+    pub fn bytes(&self) -> usize {
+        self.values.bytes() + self.factors.bytes()
     }
 
     /// Does nothing go through?
     pub fn is_none(&self) -> bool {
-        self.values.is_empty()
+        self.values.len() == 0
     }
 
     /// Does the peak end within the column of a point, at a cut-off or at grazing incidence? Then what T may reach there [-].
     pub fn edge(&self, columns: &Columns, p: DVec2) -> Option<f64> {
-        self.edges.get(columns.index(p)).map(|&edge| f64::from(edge)).filter(|&edge| edge > 0.0)
+        (!self.is_none()).then(|| edge(columns, &self.values, columns.index(p))).filter(|&edge| edge > 0.0)
     }
 
     /// By how much the truth can depart from the interpolant at a point, if it is as smooth as the columns look [-].
     pub fn bend(&self, columns: &Columns, p: DVec2) -> f64 {
-        BEND_SHARE * self.bends.get(columns.index(p)).map_or(0.0, |&bend| f64::from(bend))
+        if self.is_none() { 0.0 } else { BEND_SHARE * bend(columns, &self.values, columns.index(p)) }
     }
 
     /// The value at a point of incidence.
     pub fn at(&self, columns: &Columns, p: DVec2) -> Rgb {
-        if self.values.is_empty() {
+        if self.is_none() {
             return Rgb::ZERO;
         }
-        let factor = self.factors[columns.index(p)];
-        if factor == Vec3::ZERO {
+        let factor = self.factors.at(columns.index(p));
+        if factor == Rgb::ZERO {
             return Rgb::ZERO;
         }
-        factor.as_dvec3() * interpolant(columns, &self.values, p)
+        factor * interpolant(columns, &self.values, p)
     }
 }
 
-fn interpolant(columns: &Columns, values: &[Vec3], p: DVec2) -> Rgb {
+fn interpolant(columns: &Columns, values: &Colors, p: DVec2) -> Rgb {
     match columns {
         Columns::Radial { side } => {
             // Columns run from grazing (0) to normal; the value is even in sin(theta).
             let last = side / 2 - 1;
             let (i, t) = between((1.0 - p.length()) * 0.5 * *side as f64, last);
-            values[i].as_dvec3().lerp(values[(i + 1).min(last)].as_dvec3(), t)
+            values.at(i).lerp(values.at((i + 1).min(last)), t)
         }
         Columns::Square { side } => {
             let [x, y] = disk_to_square(p.into());
             let last = side - 1;
             let ((i, s), (j, t)) = (between(x * *side as f64, last), between(y * *side as f64, last));
             let (i1, j1) = ((i + 1).min(last), (j + 1).min(last));
-            let at = |i: usize, j: usize| values[i * side + j].as_dvec3();
+            let at = |i: usize, j: usize| values.at(i * side + j);
             let row = |i: usize| at(i, j).lerp(at(i, j1), t);
             row(i).lerp(row(i1), s)
         }
@@ -111,14 +109,14 @@ fn between(at: f64, last: usize) -> (usize, f64) {
     (i, at - i as f64)
 }
 
-fn on_rings(basis: &AngleBasis, values: &[Vec3], sin2: f64, phi: f64) -> Rgb {
+fn on_rings(basis: &AngleBasis, values: &Colors, sin2: f64, phi: f64) -> Rgb {
     let rings = basis.rings();
     let upper = rings.partition_point(|r| r.sin2(0.5) <= sin2);
     let ring = |n: usize| {
         let ring = &rings[n];
         let at = (phi / (2.0 * PI)).rem_euclid(1.0) * ring.phi_count as f64;
         let i = at as usize;
-        let patch = |k: usize| values[ring.first() + k % ring.phi_count].as_dvec3();
+        let patch = |k: usize| values.at(ring.first() + k % ring.phi_count);
         patch(i).lerp(patch(i + 1), at - i as f64)
     };
     if upper == 0 {
@@ -132,7 +130,7 @@ fn on_rings(basis: &AngleBasis, values: &[Vec3], sin2: f64, phi: f64) -> Rgb {
 }
 
 /// Mean of the interpolant over a column: exact, as each piece between centres and borders is linear in each coordinate.
-fn mean(columns: &Columns, values: &[Vec3], column: usize) -> Rgb {
+fn mean(columns: &Columns, values: &Colors, column: usize) -> Rgb {
     match columns {
         Columns::Radial { .. } => [0.25, 0.75]
             .into_iter()
@@ -147,8 +145,8 @@ fn mean(columns: &Columns, values: &[Vec3], column: usize) -> Rgb {
 }
 
 /// The largest luminous value of a column and those next to it, if one of them has none or the column reaches grazing incidence.
-fn edge(columns: &Columns, values: &[Vec3], column: usize) -> f64 {
-    let y = |c: usize| luminance(values[c].as_dvec3());
+fn edge(columns: &Columns, values: &Colors, column: usize) -> f64 {
+    let y = |c: usize| luminance(values.at(c));
     let own = y(column);
     let around = columns.neighbours(column).into_iter().map(y);
     let ends = columns.is_grazing(column) || around.clone().any(|v| v <= 0.0);
@@ -156,8 +154,8 @@ fn edge(columns: &Columns, values: &[Vec3], column: usize) -> f64 {
 }
 
 /// Sum of the second differences along both coordinates at a column, luminous.
-fn bend(columns: &Columns, values: &[Vec3], column: usize) -> f64 {
-    let y = |i: usize| luminance(values[i].as_dvec3());
+fn bend(columns: &Columns, values: &Colors, column: usize) -> f64 {
+    let y = |i: usize| luminance(values.at(i));
     let second = |a: f64, b: f64, c: f64| (a - 2.0 * b + c).abs();
     match columns {
         Columns::Radial { side } => {
@@ -185,7 +183,7 @@ fn bend(columns: &Columns, values: &[Vec3], column: usize) -> f64 {
     }
 }
 
-fn mean_over_patch(basis: &AngleBasis, values: &[Vec3], patch: usize) -> Rgb {
+fn mean_over_patch(basis: &AngleBasis, values: &Colors, patch: usize) -> Rgb {
     let (ring, step) = basis.ring_of(patch);
     let n = ring.phi_count as f64;
     let (start, end) = ((step as f64 - 0.5) / n, (step as f64 + 0.5) / n);
@@ -235,7 +233,7 @@ mod tests {
             let values: Vec<Rgb> = (0..columns.len())
                 .map(|i| Rgb::splat(if i % 7 == 3 { 0.0 } else { ((i * 37) % 11) as f64 + 1.0 }))
                 .collect();
-            let map = ThroughMap::new(&columns, values.clone());
+            let map = ThroughMap::new(&columns, &values);
             for (column, value) in values.iter().enumerate() {
                 let got = dense_mean(&map, &columns, column, 96);
                 assert!((got - value.x).abs() <= 2e-3 * value.x, "{columns:?} {column}: {got} {}", value.x);
@@ -247,9 +245,10 @@ mod tests {
     fn a_linear_transmittance_comes_back_exactly() {
         let columns = Columns::Radial { side: 64 };
         let through = |r: f64| 0.1 * (1.0 - r);
-        let values =
-            (0..columns.len()).map(|c| Rgb::splat(through(columns.point(c, [0.5, 0.5]).x))).collect();
-        let map = ThroughMap::new(&columns, values);
+        let values = (0..columns.len())
+            .map(|c| Rgb::splat(through(columns.point(c, [0.5, 0.5]).x)))
+            .collect::<Vec<_>>();
+        let map = ThroughMap::new(&columns, &values);
         for r in [0.05, 0.31, 0.5, 0.77, 0.9] {
             // To the 32 bits in which columns are kept.
             assert!((map.at(&columns, DVec2::new(0.0, r)).x - through(r)).abs() < 1e-7 * through(0.0));

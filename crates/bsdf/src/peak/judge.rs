@@ -1,7 +1,7 @@
 //! Is what stands above the surround a peak?
 
 use super::{
-    neighbourhood::Neighbourhood,
+    neighbourhood::Region,
     split::{ColumnPeak, Part},
     surround::{Estimate, Surround},
 };
@@ -39,7 +39,6 @@ const TWO_SIDED: f64 = 2.0;
 /// One column: what stands above the surround, and what that is worth.
 #[derive(Debug)]
 pub struct Judged<'a> {
-    n: &'a Neighbourhood,
     surround: &'a Surround,
     /// Flux above the surround [-], luminous, and the surround's in the same cells.
     excess: f64,
@@ -52,8 +51,8 @@ pub struct Judged<'a> {
 
 impl<'a> Judged<'a> {
     /// Weigh a column's peak.
-    pub fn new(n: &'a Neighbourhood, channels: &[&[f32]], surround: &'a Surround) -> Self {
-        let cells = || n.core.iter().map(|b| &b.cell).zip(&surround.cells[0]);
+    pub fn new(channels: &[&[f32]], surround: &'a Surround) -> Self {
+        let cells = || surround.region.core.iter().map(|b| &b.cell).zip(&surround.cells[0]);
         let value = |index: usize| f64::from(channels[0][index]);
         let sum = |of: &dyn Fn(&Estimate, f64) -> f64| -> f64 {
             cells().map(|(c, e)| of(e, value(c.index)) * c.projected_solid_angle).sum()
@@ -69,9 +68,8 @@ impl<'a> Judged<'a> {
         };
         let counted = (error * error + cells().map(flux).sum::<f64>()).sqrt();
         // Where one cell is all there is, nothing tells a peak from a smooth table: it is smooth.
-        let excess = if n.around.is_empty() { 0.0 } else { sum(&|e, v| v - e.value).max(0.0) };
+        let excess = if surround.alone { 0.0 } else { sum(&|e, v| v - e.value).max(0.0) };
         Self {
-            n,
             surround,
             excess,
             around: sum(&|e, _| e.value.max(0.0)),
@@ -102,7 +100,7 @@ impl<'a> Judged<'a> {
 
     /// What the split does in this column; `to_rgb` makes colours of the channels' values.
     pub fn part(&self, accepted: bool, to_rgb: impl Fn(&[f32]) -> Rgb, channels: &[&[f32]]) -> Part {
-        let share = self.n.core_share;
+        let share = self.surround.region.core_share;
         let mut through = Rgb::ZERO;
         let mut cells = Vec::new();
         if accepted {
@@ -143,29 +141,28 @@ impl<'a> Judged<'a> {
 
     /// One channel's cells of the peak: index, projected solid angle [sr], and what stays [1/sr].
     fn lowered(&self, values: &[f32], estimates: &[Estimate]) -> Vec<(usize, f64, f32)> {
-        let above: Vec<f64> = self
-            .n
-            .core
+        let Region { core, fringe, core_share } = &self.surround.region;
+        let above: Vec<f64> = core
             .iter()
             .zip(estimates)
             .map(|(b, e)| f64::from(values[b.cell.index]) - e.value.max(0.0))
             .collect();
         let flux = |only: &dyn Fn(f64) -> f64| -> f64 {
-            above.iter().zip(&self.n.core).map(|(&x, b)| only(x) * b.cell.projected_solid_angle).sum()
+            above.iter().zip(core).map(|(&x, b)| only(x) * b.cell.projected_solid_angle).sum()
         };
         let (net, positive) = (flux(&|x| x).max(0.0), flux(&|x| x.max(0.0)));
         // Cells that noise left below their surround stay as they are; the others give what they have too little.
         let kept = if positive > 0.0 { net / positive } else { 0.0 };
-        let core = above.iter().zip(&self.n.core).map(|(&x, b)| {
+        let lowered_core = above.iter().zip(core).map(|(&x, b)| {
             let value = f64::from(values[b.cell.index]);
             (b.cell.index, b.cell.projected_solid_angle, (value - kept * x.max(0.0)) as f32)
         });
-        let through = net / self.n.core_share;
-        let fringe = self.n.fringe.iter().map(|b| {
+        let through = net / core_share;
+        let lowered_fringe = fringe.iter().map(|b| {
             let value = f64::from(values[b.cell.index]);
             let tail = through * b.share / b.cell.projected_solid_angle;
             (b.cell.index, b.cell.projected_solid_angle, (value - tail).max(0.0) as f32)
         });
-        core.chain(fringe).collect()
+        lowered_core.chain(lowered_fringe).collect()
     }
 }

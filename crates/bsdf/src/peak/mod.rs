@@ -2,6 +2,7 @@
 //!
 //! [`Split`] is rule 3, done once in the data. [`reference`] holds rules 1 and 2, decided anew at every hit, for comparison.
 
+mod colors;
 mod fit;
 mod instrument;
 mod interpolate;

@@ -62,17 +62,24 @@ pub struct Blurred {
     pub share: f64,
 }
 
-/// A column's cells: those that hold its peak, and those from which the rest is judged.
+/// The cells that hold a column's peak.
 #[derive(Debug)]
-pub struct Neighbourhood {
+pub struct Region {
     /// Cells whose excess is measured: those that the straight direction touches or, with a blur, most of it.
     pub core: Vec<Blurred>,
     /// Cells with the blur's tails.
     pub fringe: Vec<Blurred>,
-    /// Cells around the core with their weights, the fringe first.
-    pub around: Vec<(Cell, f64)>,
     /// Share of the straight flux that the core holds.
     pub core_share: f64,
+}
+
+/// A column's cells: those that hold its peak, and those from which the rest is judged.
+#[derive(Debug)]
+pub struct Neighbourhood {
+    /// Where the peak is.
+    pub region: Region,
+    /// Cells around the core with their weights, the fringe first.
+    pub around: Vec<(Cell, f64)>,
     cell_width: f64,
 }
 
@@ -106,7 +113,8 @@ impl Neighbourhood {
             taken += 1;
         }
         core.extend(fringe.drain(..taken));
-        let mut found = Self { core, fringe, around: Vec::new(), core_share, cell_width: 0.0 };
+        let region = Region { core, fringe, core_share };
+        let mut found = Self { region, around: Vec::new(), cell_width: 0.0 };
         found.look_around(table, columns.point(column, [0.5, 0.5]), others);
         found
     }
@@ -114,10 +122,11 @@ impl Neighbourhood {
     fn look_around(&mut self, table: &Table, straight: DVec2, others: Vec<Cell>) {
         let distance = |cell: &Cell| (table.point(cell, [0.5, 0.5]) - straight).length();
         let width = |b: &Blurred| b.cell.projected_solid_angle.sqrt();
-        self.cell_width = self.core.iter().map(width).fold(0.0, f64::max);
-        let radius = self.core.iter().map(|b| distance(&b.cell)).fold(0.0, f64::max);
+        let Region { core, fringe, .. } = &self.region;
+        self.cell_width = core.iter().map(width).fold(0.0, f64::max);
+        let radius = core.iter().map(|b| distance(&b.cell)).fold(0.0, f64::max);
         let region = self.cell_width.max(radius);
-        let mut near: Vec<(Cell, f64)> = self.fringe.iter().map(|b| (b.cell, distance(&b.cell))).collect();
+        let mut near: Vec<(Cell, f64)> = fringe.iter().map(|b| (b.cell, distance(&b.cell))).collect();
         near.extend(within(table, &others, straight, REACH * region));
         if near.is_empty() {
             // In bases whose patches are long and narrow all others may lie further away: then the nearest ones.
@@ -149,7 +158,7 @@ pub struct Averages<'a> {
 impl Averages<'_> {
     /// Lobes of height 1 averaged over the cells, the core's first, by shape of the table's ladders.
     pub fn of(&self, shapes: &[Shape]) -> Vec<Vec<f64>> {
-        let cells = self.n.core.len() + self.n.around.len();
+        let cells = self.n.region.core.len() + self.n.around.len();
         let mut averages = vec![vec![0.0; cells]; shapes.len()];
         let mut start = 0;
         // One after the other what one rule is enough for.
@@ -182,7 +191,7 @@ impl Averages<'_> {
     }
 
     fn distances(&self, rule: &[(f64, f64)]) -> Vec<Distances> {
-        let cells = self.n.core.iter().map(|b| &b.cell).chain(self.n.around.iter().map(|a| &a.0));
+        let cells = self.n.region.core.iter().map(|b| &b.cell).chain(self.n.around.iter().map(|a| &a.0));
         distances(self.table, self.columns, self.column, cells, rule)
     }
 }

@@ -1,10 +1,10 @@
 //! Rule 3: the table as residual plus delta, once, column by column.
 
 use super::{
+    colors::Colors,
     instrument::{self, Instrument},
     interpolate::ThroughMap,
     judge::Judged,
-    neighbourhood::Neighbourhood,
     surround,
 };
 use crate::{
@@ -19,9 +19,11 @@ use sunpeak_core::{Rgb, gray, luminance};
 #[derive(Debug)]
 pub struct Split {
     evidence: Vec<Evidence>,
-    /// For each column its first overlay cell; one more at the end.
+    /// For each column its first lowered cell; one more at the end.
     first: Vec<u32>,
-    overlay: Vec<Overlay>,
+    /// The cells that are lowered, column by column in ascending order, and their surround [1/sr].
+    lowered: Vec<u32>,
+    surround: Colors,
     map: ThroughMap,
     instrument_fwhm_deg: Option<f64>,
 }
@@ -66,13 +68,6 @@ impl From<ColumnPeak> for Evidence {
 /// A column's peak, and the cells that are lowered with their surround [1/sr].
 pub type Part = (ColumnPeak, Vec<(usize, Rgb)>);
 
-/// A cell of the table that is lowered to its surround.
-#[derive(Clone, Copy, Debug)]
-struct Overlay {
-    index: u32,
-    surround: [f32; 3],
-}
-
 impl Split {
     /// Nothing split off.
     pub fn none() -> Self {
@@ -83,7 +78,8 @@ impl Split {
         Self {
             evidence: Vec::new(),
             first: vec![0],
-            overlay: Vec::new(),
+            lowered: Vec::new(),
+            surround: Colors::new(&[]),
             map: ThroughMap::none(),
             instrument_fwhm_deg,
         }
@@ -102,14 +98,9 @@ impl Split {
             Instrument::Find => instrument::find(table, columns),
         };
         let blur = instrument_fwhm_deg.map(instrument::blur);
-        let neighbourhoods: Vec<_> =
-            (0..columns.len()).into_par_iter().map(|c| Neighbourhood::of(table, columns, c, blur)).collect();
-        let surrounds = surround::estimate(table, columns, &neighbourhoods, &channels, blur);
-        let judged: Vec<Judged> = neighbourhoods
-            .par_iter()
-            .zip(&surrounds)
-            .map(|(n, surround)| Judged::new(n, &channels, surround))
-            .collect();
+        let surrounds = surround::estimate(table, columns, &channels, blur);
+        let judged: Vec<Judged> =
+            surrounds.par_iter().map(|surround| Judged::new(&channels, surround)).collect();
         let certain: Vec<bool> = judged.iter().map(Judged::is_certain).collect();
         let parts = judged.iter().enumerate().map(|(column, judged)| {
             let beside = || columns.neighbours(column).into_iter().any(|c| certain[c]);
@@ -122,19 +113,19 @@ impl Split {
     /// What was found before: for each column its peak, and the cells that are lowered, with their surround [1/sr].
     pub fn from_parts(division: &Columns, parts: Vec<Part>, instrument_fwhm_deg: Option<f64>) -> Self {
         let mut split = Self::empty(instrument_fwhm_deg);
-        let through = parts.iter().map(|(column, _)| column.through).collect();
+        let through: Vec<Rgb> = parts.iter().map(|(column, _)| column.through).collect();
+        let mut surround = Vec::new();
         for (column, mut cells) in parts {
             cells.sort_by_key(|c| c.0);
-            split.overlay.extend(cells.into_iter().map(|(index, surround)| Overlay {
-                index: index as u32,
-                surround: surround.as_vec3().to_array(),
-            }));
-            split.first.push(split.overlay.len() as u32);
+            split.lowered.extend(cells.iter().map(|c| c.0 as u32));
+            surround.extend(cells.iter().map(|c| c.1));
+            split.first.push(split.lowered.len() as u32);
             split.evidence.push(column.into());
         }
-        split.map = ThroughMap::new(division, through);
+        split.surround = Colors::new(&surround);
+        split.map = ThroughMap::new(division, &through);
         split.first.shrink_to_fit();
-        split.overlay.shrink_to_fit();
+        split.lowered.shrink_to_fit();
         split.evidence.shrink_to_fit();
         split
     }
@@ -148,7 +139,7 @@ impl Split {
     pub fn overlay(&self, column: usize) -> impl Iterator<Item = (usize, Rgb)> {
         let bound = |c: usize| self.first.get(c).map_or(0, |&at| at as usize);
         let range = bound(column)..bound(column + 1).max(bound(column));
-        self.overlay[range].iter().map(|c| (c.index as usize, DVec3::from(glam::Vec3::from(c.surround))))
+        range.map(|at| (self.lowered[at] as usize, self.surround.at(at)))
     }
 
     /// What was found in a column; none for reflection.
@@ -171,9 +162,8 @@ impl Split {
     /// The surround [1/sr] in place of a cell's value, where the cell is part of its column's peak.
     pub fn surround(&self, column: usize, index: usize) -> Option<Rgb> {
         let range = *self.first.get(column)? as usize..*self.first.get(column + 1)? as usize;
-        let cells = &self.overlay[range];
-        let at = cells.binary_search_by_key(&(index as u32), |c| c.index).ok()?;
-        Some(DVec3::from(glam::Vec3::from(cells[at].surround)))
+        let at = self.lowered[range.clone()].binary_search(&(index as u32)).ok()?;
+        Some(self.surround.at(range.start + at))
     }
 
     /// Through transmittance [-] at a point of incidence: the interpolant, scaled to each column's mean.
@@ -202,6 +192,14 @@ impl Split {
     /// Does the peak end within the column of a point: is it a column across a cut-off, or one that reaches grazing incidence?
     pub fn is_edge(&self, columns: &Columns, p_in: DVec2) -> bool {
         self.map.edge(columns, p_in).is_some()
+    }
+
+    /// Memory that it takes beside its table [bytes].
+    pub fn bytes(&self) -> usize {
+        let lists = size_of_val(self.evidence.as_slice())
+            + size_of_val(self.first.as_slice())
+            + size_of_val(self.lowered.as_slice());
+        lists + self.surround.bytes() + self.map.bytes()
     }
 
     /// Does any column have a peak?

@@ -8,7 +8,7 @@
 
 use super::{
     fit::Fit,
-    neighbourhood::Neighbourhood,
+    neighbourhood::{Neighbourhood, Region},
     noise::{ColumnNoise, Noise, median},
     shape::{Shape, shapes},
 };
@@ -41,8 +41,12 @@ pub struct Estimate {
 }
 
 /// The surround of one column.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Surround {
+    /// Where the peak would be.
+    pub region: Region,
+    /// No cell lies around it.
+    pub alone: bool,
     /// By channel, by cell of the core.
     pub cells: Vec<Vec<Estimate>>,
     /// Standard deviation of the smooth lobe.
@@ -57,15 +61,16 @@ pub struct Surround {
 pub fn estimate(
     table: &Table,
     columns: &Columns,
-    neighbourhoods: &[Neighbourhood],
     channels: &[&[f32]],
     blur: Option<Spread>,
 ) -> Vec<Surround> {
     let shapes = shapes(table, blur);
-    let fits: Vec<ColumnFits> = neighbourhoods
-        .par_iter()
-        .enumerate()
-        .map(|(column, n)| ColumnFits::new(table, columns, column, n, channels, &shapes))
+    let fits: Vec<ColumnFits> = (0..columns.len())
+        .into_par_iter()
+        .map(|column| {
+            let neighbourhood = Neighbourhood::of(table, columns, column, blur);
+            ColumnFits::new(table, columns, column, neighbourhood, channels, &shapes)
+        })
         .collect();
     let table_misfit: Vec<f64> = (0..shapes.len())
         .map(|k| {
@@ -76,15 +81,17 @@ pub fn estimate(
         .collect();
     let noise: Vec<ColumnNoise> = fits.iter().map(|f| f.noise).collect();
     let pooled = Noise::of_table(&noise);
-    fits.par_iter().map(|f| f.surround(&shapes, &table_misfit, pooled)).collect()
+    fits.into_par_iter().map(|f| f.surround(&shapes, &table_misfit, pooled)).collect()
 }
 
 /// All shapes fitted to one column.
 struct ColumnFits {
+    region: Region,
+    alone: bool,
     /// By channel, by shape.
     channels: Vec<Vec<Fit>>,
-    /// By shape: a lobe of height 1 averaged over the cells of the core.
-    at_core: Vec<Vec<f64>>,
+    /// By shape, by cell of the core: a lobe of height 1 averaged over the cell.
+    at_core: Vec<f64>,
     noise: ColumnNoise,
 }
 
@@ -93,39 +100,37 @@ impl ColumnFits {
         table: &Table,
         columns: &Columns,
         column: usize,
-        n: &Neighbourhood,
+        n: Neighbourhood,
         channels: &[&[f32]],
         shapes: &[Shape],
     ) -> Self {
         let averages = n.averages(table, columns, column).of(shapes);
-        let mut found = Self {
-            channels: vec![Vec::with_capacity(shapes.len()); channels.len()],
-            at_core: Vec::with_capacity(shapes.len()),
-            noise: ColumnNoise::default(),
-        };
+        let mut by_channel = vec![Vec::with_capacity(shapes.len()); channels.len()];
+        let mut at_cores = Vec::with_capacity(shapes.len() * n.region.core.len());
         let mut best = (f64::INFINITY, Fit::default(), Vec::new());
         for lobe in averages {
-            let (at_core, around) = lobe.split_at(n.core.len());
-            for (fits, values) in found.channels.iter_mut().zip(channels) {
-                fits.push(Fit::new(n, values, at_core, around));
+            let (at_core, around) = lobe.split_at(n.region.core.len());
+            for (fits, values) in by_channel.iter_mut().zip(channels) {
+                fits.push(Fit::new(&n, values, at_core, around));
             }
-            if let Some(fit) = found.channels[0].last().filter(|f| f.misfit() < best.0) {
+            if let Some(fit) = by_channel[0].last().filter(|f: &&Fit| f.misfit() < best.0) {
                 best = (fit.misfit(), *fit, around.to_vec());
             }
-            found.at_core.push(at_core.to_vec());
+            at_cores.extend_from_slice(at_core);
         }
         let (_, fit, lobe) = best;
-        found.noise = ColumnNoise::of(
+        let noise = ColumnNoise::of(
             n.around
                 .iter()
                 .zip(&lobe)
-                .skip(n.fringe.len())
+                .skip(n.region.fringe.len())
                 .map(|((cell, _), &g)| (f64::from(channels[0][cell.index]), fit.value(g))),
         );
-        found
+        let alone = n.around.is_empty();
+        Self { region: n.region, alone, channels: by_channel, at_core: at_cores, noise }
     }
 
-    fn surround(&self, shapes: &[Shape], table_misfit: &[f64], pooled: Noise) -> Surround {
+    fn surround(self, shapes: &[Shape], table_misfit: &[f64], pooled: Noise) -> Surround {
         let misfit = |k: usize| self.channels[0][k].misfit() + table_misfit[k];
         let best = (0..shapes.len()).map(misfit).fold(f64::INFINITY, f64::min);
         // Shapes that fit about as well share the estimate, so that it is a continuous function of the data.
@@ -139,11 +144,13 @@ impl ColumnFits {
         let possible: Vec<usize> =
             (0..shapes.len()).filter(|&k| misfit(k) <= PLAUSIBLE * (best + GOOD_ENOUGH)).collect();
         let local = pooled.at_least(|kind| average(&|k| self.channels[0][k].noise_ratios()[kind]));
+        let cells = self.region.core.len();
         let estimate = |fits: &[Fit], cell: usize| {
-            let value = |k: usize| fits[k].value(self.at_core[k][cell]);
+            let at_core = |k: usize| self.at_core[k * cells + cell];
+            let value = |k: usize| fits[k].value(at_core(k));
             let likely = average(&value);
             let variance = |k: usize| fits[k].variance().max(pooled.variance(likely));
-            let leverage = |k: usize| fits[k].leverage(self.at_core[k][cell]);
+            let leverage = |k: usize| fits[k].leverage(at_core(k));
             Estimate {
                 value: likely,
                 error: average(&|k| (variance(k) * leverage(k)).sqrt()),
@@ -154,11 +161,10 @@ impl ColumnFits {
                 ],
             }
         };
-        let cells = self
-            .channels
-            .iter()
-            .map(|fits| (0..self.at_core[0].len()).map(|cell| estimate(fits, cell)).collect())
-            .collect();
-        Surround { cells, lobe_sigma: average(&|k| shapes[k].sigma), misfit: local, noise: pooled }
+        let by_channel =
+            self.channels.iter().map(|fits| (0..cells).map(|cell| estimate(fits, cell)).collect()).collect();
+        let lobe_sigma = average(&|k| shapes[k].sigma);
+        let (region, alone) = (self.region, self.alone);
+        Surround { region, alone, cells: by_channel, lobe_sigma, misfit: local, noise: pooled }
     }
 }

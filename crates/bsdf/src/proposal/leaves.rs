@@ -100,26 +100,38 @@ impl Leaves {
     /// Visit the parts of a column's cells in a window.
     fn visit(&self, column: usize, window: Part, mut visit: impl FnMut(&Leaf, Part)) {
         let Some(tree) = self.tree() else { return };
-        let at = |cell: usize| {
-            let middle = (cell as f64 + 0.5) / self.side as f64;
-            (middle, middle)
-        };
         let [a, b] = window.corner.map(|c| (c, c + window.size));
-        let whole = (0.0, 1.0);
-        let (i, j) = (at(column / self.side), at(column % self.side));
-        let (bounds, first) = match (&self.columns, self.target.oriented.reversed) {
-            (Columns::Radial { .. }, _) => ([at(column), a, b, whole], 1),
-            (_, false) => ([i, j, a, b], 2),
-            (_, true) => ([a, b, i, j], 0),
+        let bounds = self.in_column(column, [a, b], |middle| (middle, middle), (0.0, 1.0));
+        tree.for_each_leaf_in(&bounds, |leaf| visit(leaf, self.part(leaf, window)));
+    }
+
+    /// The cell of a column that covers a whole window, if one does.
+    fn covering(&self, column: usize, window: Part) -> Option<Leaf> {
+        let [a, b] = window.corner.map(|c| c + 0.5 * window.size);
+        let leaf = self.tree()?.leaf(self.in_column(column, [a, b], |middle| middle, 0.0));
+        (leaf.size >= window.size).then_some(leaf)
+    }
+
+    /// Coordinates of the tree, or ranges of them, from those on the square where rays go and the middle of the column; `unused`
+    /// stands past the tree's rank.
+    fn in_column<T: Copy>(&self, column: usize, [a, b]: [T; 2], at: impl Fn(f64) -> T, unused: T) -> [T; 4] {
+        let middle = |cell: usize| at((cell as f64 + 0.5) / self.side as f64);
+        if let Columns::Radial { .. } = self.columns {
+            return [middle(column), a, b, unused];
+        }
+        let (i, j) = (middle(column / self.side), middle(column % self.side));
+        if self.target.oriented.reversed { [a, b, i, j] } else { [i, j, a, b] }
+    }
+
+    /// The part of a cell that is in a window.
+    fn part(&self, leaf: &Leaf, window: Part) -> Part {
+        let first = match (&self.columns, self.target.oriented.reversed) {
+            (Columns::Radial { .. }, _) => 1,
+            (_, false) => 2,
+            (_, true) => 0,
         };
-        tree.for_each_leaf_in(&bounds, |leaf| {
-            let corner = [leaf.corner[first], leaf.corner[first + 1]];
-            let part = Part {
-                corner: [0, 1].map(|k| corner[k].max(window.corner[k])),
-                size: leaf.size.min(window.size),
-            };
-            visit(leaf, part);
-        });
+        let corner = [leaf.corner[first], leaf.corner[first + 1]];
+        Part { corner: [0, 1].map(|k| corner[k].max(window.corner[k])), size: leaf.size.min(window.size) }
     }
 
     fn block(&self, block: usize) -> Part {
@@ -142,20 +154,28 @@ impl Leaves {
         });
     }
 
-    /// A point of a block, in proportion to the values, and its cell's value [1/sr] where that is the table's.
+    /// A point of a block, in proportion to the values, and its cell's value [1/sr] where that is the table's; `pick` gives a random
+    /// number where one cell of several has to be chosen.
     pub fn point(
         &self,
         p_in: DVec2,
         column: usize,
         block: usize,
-        [pick, u, v]: [f64; 3],
+        pick: impl Fn() -> f64,
+        [u, v]: [f64; 2],
     ) -> Option<(DVec2, Option<Rgb>)> {
-        let mut choice = Choice::new(pick);
-        self.visit(column, self.block(block), |leaf, part| {
-            let value = self.value(column, leaf);
-            choice.offer(luminance(value) * part.size * part.size, (part, value));
-        });
-        let (part, value) = choice.taken()?;
+        let window = self.block(block);
+        let (part, value) = match self.covering(column, window) {
+            Some(leaf) => (window, self.value(column, &leaf)),
+            None => {
+                let mut choice = Choice::new(pick());
+                self.visit(column, window, |leaf, part| {
+                    let value = self.value(column, leaf);
+                    choice.offer(luminance(value) * part.size * part.size, (part, value));
+                });
+                choice.taken()?
+            }
+        };
         let p: DVec2 =
             square_to_disk([part.corner[0] + u * part.size, part.corner[1] + v * part.size]).into();
         let p = match (&self.columns, self.target.oriented.reversed) {

@@ -32,8 +32,8 @@ impl Product for Blind {
         self.scattered * (1.0 - self.through(p_in)) / PI
     }
 
-    fn reflectance(&self) -> f64 {
-        0.3
+    fn reflectance(&self) -> [f64; 2] {
+        [0.3; 2]
     }
 
     fn is_isotropic(&self) -> bool {

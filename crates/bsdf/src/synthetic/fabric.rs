@@ -134,8 +134,8 @@ impl Product for Woven {
         scattered * ((1.0 - lobe_share) / PI + lobe_share * lobe * self.norm(p_in.length()))
     }
 
-    fn reflectance(&self) -> f64 {
-        self.fabric.reflectance
+    fn reflectance(&self) -> [f64; 2] {
+        [self.fabric.reflectance; 2]
     }
 }
 

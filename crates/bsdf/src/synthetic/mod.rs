@@ -2,7 +2,7 @@
 //!
 //! [`Fabric`] is the family of the design studies for peak extraction. Beside it stand what else one can see through
 //! ([`Weave`], [`Perforated`], [`Pane`], [`Blind`]) and what one cannot ([`Panel`], [`Diffuser`]): a split must take the
-//! straight part of the first and leave the others alone. [`Goniophotometer`] adds what a measurement adds: an instrument's
+//! straight part of the first and leave the others alone. [`RollerBlind`] is what a datasheet says. [`Goniophotometer`] adds what a measurement adds: an instrument's
 //! blur, counted rays, noisy values.
 
 mod basis;
@@ -13,6 +13,7 @@ mod pane;
 mod panel;
 mod perforated;
 mod product;
+mod roller_blind;
 mod tabulate;
 mod weave;
 
@@ -24,5 +25,6 @@ pub use pane::Pane;
 pub use panel::{Diffuser, Panel};
 pub use perforated::Perforated;
 pub use product::{Lobe, Product};
+pub use roller_blind::RollerBlind;
 pub use tabulate::tabulate;
 pub use weave::Weave;

@@ -37,7 +37,7 @@ impl Product for Pane {
         0.0
     }
 
-    fn reflectance(&self) -> f64 {
-        0.0
+    fn reflectance(&self) -> [f64; 2] {
+        [0.0; 2]
     }
 }

@@ -35,8 +35,8 @@ impl Product for Panel {
         Some(Lobe { flux: self.transmittance, spread })
     }
 
-    fn reflectance(&self) -> f64 {
-        0.3
+    fn reflectance(&self) -> [f64; 2] {
+        [0.3; 2]
     }
 }
 
@@ -60,7 +60,7 @@ impl Product for Diffuser {
         self.transmittance / PI
     }
 
-    fn reflectance(&self) -> f64 {
-        0.3
+    fn reflectance(&self) -> [f64; 2] {
+        [0.3; 2]
     }
 }

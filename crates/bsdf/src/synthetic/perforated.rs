@@ -34,7 +34,7 @@ impl Product for Perforated {
         self.from_walls * (self.open_area - self.through(p_in)) / PI
     }
 
-    fn reflectance(&self) -> f64 {
-        0.5 * (1.0 - self.open_area)
+    fn reflectance(&self) -> [f64; 2] {
+        [0.5 * (1.0 - self.open_area); 2]
     }
 }

@@ -26,8 +26,8 @@ pub trait Product: Debug + Sync {
         None
     }
 
-    /// Diffuse reflectance of both sides [-].
-    fn reflectance(&self) -> f64;
+    /// Diffuse reflectance [-] of the side that the light meets, and of the other one.
+    fn reflectance(&self) -> [f64; 2];
 
     /// The same for all azimuths of incidence.
     fn is_isotropic(&self) -> bool {
@@ -69,7 +69,8 @@ impl Product for OtherSide<'_> {
         self.0.tint()
     }
 
-    fn reflectance(&self) -> f64 {
-        self.0.reflectance()
+    fn reflectance(&self) -> [f64; 2] {
+        let [front, back] = self.0.reflectance();
+        [back, front]
     }
 }

@@ -51,7 +51,9 @@ pub fn tabulate(product: &dyn Product, basis: Basis, seen_by: &Goniophotometer) 
     } else {
         side(&OtherSide(product), seen_by.seed ^ 0x5bd1_e995)
     };
-    let reflection = Arc::new(Distribution::new(diffuse(product.reflectance(), basis), None));
+    let [reflection_front, reflection_back] = product
+        .reflectance()
+        .map(|reflectance| Some(Arc::new(Distribution::new(diffuse(reflectance, basis), None))));
     let document = Document {
         name: product.name(),
         manufacturer: "Sunpeak (synthetic)".into(),
@@ -61,8 +63,8 @@ pub fn tabulate(product: &dyn Product, basis: Basis, seen_by: &Goniophotometer) 
     let sides = Sides {
         transmission_front: Some(front),
         transmission_back: Some(back),
-        reflection_front: Some(reflection.clone()),
-        reflection_back: Some(reflection),
+        reflection_front,
+        reflection_back,
     };
     Ok(Bsdf::from_sides(document, sides))
 }

@@ -48,7 +48,7 @@ impl Product for Weave {
         self.tint
     }
 
-    fn reflectance(&self) -> f64 {
+    fn reflectance(&self) -> [f64; 2] {
         self.woven.reflectance()
     }
 

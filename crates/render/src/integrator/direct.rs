@@ -1,13 +1,16 @@
 //! Light that arrives from emitters: by shadow rays, and by paths that meet them.
 
 use super::{Integrator, Met, path::Path};
+use crate::accel::Hit;
 use crate::guide::Guide;
-use crate::light::{LightSample, power_heuristic};
-use crate::material::{Arrival, Emitter, Smooth, reflect};
+use crate::light::{LightSample, at_infinity, power_heuristic};
+use crate::material::{Arrival, Emitter, Inside, Smooth, reflect};
 use crate::shapes::Ray;
 use crate::transmit::Target;
 use crate::world::{Facing, Object};
+use glam::DQuat;
 use sunpeak_core::{Rgb, Sampler, Vec3};
+use sunpeak_scene::RayState;
 
 /// Up to so many pairs of sun and mirror are all tried at every vertex; of more, one at random.
 const ALL_REFLECTED_SUNS: usize = 4;
@@ -21,6 +24,7 @@ impl Integrator<'_> {
             share: met.smooth_share(),
             is_last: self.is_last(path),
             guide: self.guide(&met.scattering.smooth),
+            inside: path.inside,
         };
         let mut sum = Rgb::ZERO;
         for &sun in self.world.distant.suns() {
@@ -29,16 +33,23 @@ impl Integrator<'_> {
             }
         }
         sum += self.suns_in_mirrors(&receiver, sampler);
+        if !self.world.prisms.is_empty() {
+            sum += self.suns_through_prisms(&receiver, sampler);
+        }
         if self.world.distant.has_dome()
             && let Some(sample) = self.world.distant.sample_dome(sampler.next_2d())
         {
             sum += self.received(&receiver, &sample, &Target::of(&sample));
         }
-        if !self.world.lamps.is_empty()
-            && let Some(sample) =
-                self.world.lamps.sample(met.arrival.point, sampler.next_1d(), sampler.next_2d())
-        {
-            sum += self.received(&receiver, &sample, &Target::of(&sample));
+        if self.world.lamps.is_empty() {
+            return sum;
+        }
+        // Both sides of what has thickness look for lamps, each from where its own light starts.
+        for origin in met.origins() {
+            let sample = self.world.lamps.sample(origin, sampler.next_1d(), sampler.next_2d());
+            if let Some(sample) = sample.filter(|s| receiver.origin(s.direction) == origin) {
+                sum += self.received(&receiver, &sample, &Target::of(&sample));
+            }
         }
         sum
     }
@@ -53,8 +64,11 @@ impl Integrator<'_> {
         if value.total() == Rgb::ZERO || sample.radiance == Rgb::ZERO {
             return Rgb::ZERO;
         }
-        let ray = Ray::new(receiver.arrival.point, sample.direction);
-        let transmitted = self.world.transmitted(&ray, target);
+        if !receiver.arrival.agrees_on(sample.direction) {
+            return Rgb::ZERO;
+        }
+        let ray = Ray::new(receiver.origin(sample.direction), sample.direction);
+        let transmitted = self.world.transmitted(&ray, target, receiver.inside);
         if transmitted.is_blocked() {
             return Rgb::ZERO;
         }
@@ -91,21 +105,74 @@ impl Integrator<'_> {
         if sample.direction.dot(normal) <= 0.0 {
             return Rgb::ZERO;
         }
-        let ray = Ray::new(receiver.arrival.point, reflect(sample.direction, normal));
+        let direction = reflect(sample.direction, normal);
+        let ray = Ray::new(receiver.origin(direction), direction);
         let Some(hit) = world.accel.crossing_of(&ray, mirror) else { return Rgb::ZERO };
         let value = receiver.smooth_value(&LightSample { direction: ray.direction, ..sample });
         if value.total() == Rgb::ZERO {
             return Rgb::ZERO;
         }
-        let to_mirror = world.transmitted(&ray, &Target::point(hit, mirror));
+        let to_mirror = world.transmitted(&ray, &Target::point(hit, mirror), receiver.inside);
         if to_mirror.is_blocked() {
             return Rgb::ZERO;
         }
         let onwards = Ray::new(ray.at(hit), sample.direction);
-        let to_sun = world.transmitted(&onwards, &Target::sun(sun, &sample));
-        let reflectance = world.mirror_reflectance(mirror);
+        let to_sun = world.transmitted(&onwards, &Target::sun(sun, &sample), world.inside_at(&onwards));
+        let reflectance = world.mirror_reflectance(&Hit { t: hit, object: mirror }, &ray);
         let factor = receiver.cosine(ray.direction) / sample.pdf;
         value.total() * sample.radiance * to_mirror.share * reflectance * to_sun.share * factor
+    }
+
+    /// Suns that prisms send in another direction: virtual sources too.
+    fn suns_through_prisms(&self, receiver: &Receiver, sampler: &mut Sampler) -> Rgb {
+        let mut sum = Rgb::ZERO;
+        for &sun in self.world.distant.suns() {
+            for &(object, place) in &self.world.prisms {
+                for way in 0..self.world.prism(object).map_or(0, |prism| prism.ways) {
+                    sum += self.sun_through_prism(receiver, sun, (object, place), way, sampler.next_2d());
+                }
+            }
+        }
+        sum
+    }
+
+    fn sun_through_prism(
+        &self,
+        receiver: &Receiver,
+        sun: usize,
+        (object, place): (u32, Vec3),
+        way: usize,
+        u: [f64; 2],
+    ) -> Rgb {
+        let world = self.world;
+        let (Some(prism), Some(sample)) = (world.prism(object), world.distant.sample_sun(sun, u)) else {
+            return Rgb::ZERO;
+        };
+        let Facing::Flat(normal) = world.objects[object as usize].facing else { return Rgb::ZERO };
+        // Where the sun's light goes behind the prism: from there the sun is seen.
+        let center = world.distant.get(sun).direction;
+        let light = RayState::new(place, normal, -center, 0.0);
+        let Some((_, leaving)) = prism.way(way, &light, Vec3::ZERO) else { return Rgb::ZERO };
+        let direction = DQuat::from_rotation_arc(center, -leaving) * sample.direction;
+        let ray = Ray::new(receiver.origin(direction), direction);
+        let Some(hit) = world.accel.crossing_of(&ray, object) else { return Rgb::ZERO };
+        let value = receiver.smooth_value(&LightSample { direction, ..sample });
+        if value.total() == Rgb::ZERO || !receiver.arrival.agrees_on(direction) {
+            return Rgb::ZERO;
+        }
+        let met = RayState::new(ray.at(hit), normal, direction, hit);
+        let Some((share, onwards)) = prism.way(way, &met, center) else { return Rgb::ZERO };
+        if world.distant.seen(onwards) != Some(sun) {
+            return Rgb::ZERO;
+        }
+        let to_prism = world.transmitted(&ray, &Target::point(hit, object), receiver.inside);
+        if to_prism.is_blocked() {
+            return Rgb::ZERO;
+        }
+        let onwards = Ray::new(ray.at(hit), onwards);
+        let to_sun = world.transmitted(&onwards, &Target::sun(sun, &sample), world.inside_at(&onwards));
+        let factor = share * receiver.cosine(direction) / sample.pdf;
+        value.total() * sample.radiance * to_prism.share * to_sun.share * factor
     }
 
     /// What a path that meets nothing finds at infinity.
@@ -120,7 +187,8 @@ impl Integrator<'_> {
             return Rgb::ZERO;
         }
         let shadow_pdf = || self.world.distant.pdf(index, direction);
-        source.emitter.radiance(direction) * weight(path, &source.emitter, f64::INFINITY, shadow_pdf)
+        source.emitter.radiance(&at_infinity(direction))
+            * weight(path, &source.emitter, f64::INFINITY, shadow_pdf)
     }
 
     /// Suns are not left to chance: behind a mirror or a solid of glass that a scattered path met they are found by
@@ -147,15 +215,15 @@ impl Integrator<'_> {
             return Rgb::ZERO;
         }
         let direction = path.ray.direction;
-        let Some(departure) = path.departure else { return emitter.radiance(direction) };
+        let radiance = emitter.radiance(&arrival.ray_state()) * arrival.tint;
+        let Some(departure) = path.departure else { return radiance };
         let distance = departure.point.distance(arrival.point);
         let shadow_pdf = || {
             object.lamp.map_or(0.0, |lamp| {
                 self.world.lamps.pdf(lamp as usize, departure.point, direction, distance, arrival.normal)
             })
         };
-        emitter.radiance(direction)
-            * (emitter.falloff(distance) * weight(path, emitter, distance, shadow_pdf))
+        radiance * (emitter.falloff(distance) * weight(path, emitter, distance, shadow_pdf))
     }
 }
 
@@ -185,6 +253,8 @@ struct Receiver<'a, 'w> {
     /// May no diffuse bounce follow?
     is_last: bool,
     guide: Option<&'a Guide>,
+    /// Mist and antimatter around.
+    inside: Inside,
 }
 
 impl Receiver<'_, '_> {
@@ -206,6 +276,11 @@ impl Receiver<'_, '_> {
     }
 
     fn cosine(&self, direction: Vec3) -> f64 {
-        direction.dot(self.arrival.normal).abs()
+        self.smooth.cosine(direction, self.arrival.normal)
+    }
+
+    /// Where light from this direction arrives.
+    fn origin(&self, direction: Vec3) -> Vec3 {
+        self.arrival.point + self.smooth.offset(direction)
     }
 }

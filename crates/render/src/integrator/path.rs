@@ -1,6 +1,6 @@
 //! The state of a path while it is traced.
 
-use crate::material::{Arrival, Material};
+use crate::material::{Arrival, Inside, Material};
 use crate::shapes::Ray;
 use sunpeak_core::{Rgb, Vec3};
 
@@ -35,12 +35,19 @@ pub(super) struct Path {
     pub is_distorted: bool,
     /// Direction of the first segment.
     pub first_direction: Vec3,
-    /// Extinction of the medium [1/m].
+    /// What the light past the last diffuse bounce adds at the end.
+    pub ambient: Rgb,
+    /// Extinction of the solid that the path is in [1/m].
     extinction: Rgb,
+    /// Way since the camera, and since the path was last scattered, mirrored or refracted [m].
+    travelled: f64,
+    distance: f64,
+    /// Mist and antimatter that the path is in.
+    pub inside: Inside,
 }
 
 impl Path {
-    pub fn from_camera(ray: Ray, reach: f64) -> Self {
+    pub fn from_camera(ray: Ray, reach: f64, inside: Inside) -> Self {
         Self {
             ray,
             reach,
@@ -52,7 +59,11 @@ impl Path {
             is_past_peak: false,
             is_distorted: false,
             first_direction: ray.direction,
+            ambient: Rgb::ZERO,
             extinction: Rgb::ZERO,
+            travelled: 0.0,
+            distance: 0.0,
+            inside,
         }
     }
 
@@ -64,19 +75,26 @@ impl Path {
     /// Count the way to a surface.
     pub fn travel(&mut self, distance: f64) {
         self.reach -= distance;
+        self.travelled += distance;
+        self.distance += distance;
         self.events += 1;
         if self.extinction != Rgb::ZERO {
             self.throughput *= (-self.extinction * distance).exp();
         }
     }
 
-    /// Weaken the way to the inside face of a solid that the path did not enter by a face: it started inside.
+    /// Way since the path was last scattered, mirrored or refracted, and since the camera [m].
+    pub fn way(&self) -> [f64; 2] {
+        [self.distance, self.travelled]
+    }
+
+    /// Weaken the way to the face of a solid that the path did not enter by a face: it started inside.
     pub fn absorb(&mut self, material: &Material, arrival: &Arrival, distance: f64) {
         if let Material::Dielectric(solid) = material
-            && !arrival.at_front()
+            && let Some(extinction) = solid.extinction_before(arrival)
             && self.extinction == Rgb::ZERO
         {
-            self.throughput *= (-solid.extinction() * distance).exp();
+            self.throughput *= (-extinction * distance).exp();
         }
     }
 
@@ -88,6 +106,7 @@ impl Path {
 
     pub fn mirror(&mut self, arrival: &Arrival, share: Rgb, is_flat: bool) {
         self.ray = Ray::new(arrival.point, arrival.mirrored());
+        self.distance = 0.0;
         self.reach = f64::INFINITY;
         self.throughput *= share;
         self.is_bent = true;
@@ -96,17 +115,19 @@ impl Path {
 
     pub fn refract(&mut self, arrival: &Arrival, direction: Vec3, share: Rgb, material: Option<&Material>) {
         self.ray = Ray::new(arrival.point, direction);
+        self.distance = 0.0;
         self.throughput *= share;
         self.is_bent = true;
         self.is_distorted = true;
         self.extinction = match material {
-            Some(Material::Dielectric(solid)) if arrival.at_front() => solid.extinction(),
+            Some(Material::Dielectric(solid)) => solid.extinction_behind(arrival),
             _ => Rgb::ZERO,
         };
     }
 
     pub fn depart(&mut self, departure: Departure, direction: Vec3, weight: Rgb) {
         self.ray = Ray::new(departure.point, direction);
+        self.distance = 0.0;
         self.reach = f64::INFINITY;
         self.throughput *= weight;
         self.departure = Some(departure);

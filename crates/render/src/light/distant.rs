@@ -7,16 +7,25 @@ use super::{LightSample, dome::Dome};
 use crate::SMALL_SOURCE_DEG;
 use crate::material::{Emitter, EmitterKind};
 use sunpeak_core::{Frame, Rgb, Vec3, cone_solid_angle, warp};
+use sunpeak_scene::RayState;
 
 /// Cones are closed: a ray along the horizon, between a sky and a ground of 180 degrees each, sees one of them whatever rounding
 /// does to it.
 const EDGE: f64 = 1e-9;
+
+/// Where expressions see a source [m] (Radiance, `FHUGE`).
+const FAR_AWAY: f64 = 1e10;
 
 /// Does the unit vector `direction` point into the cone of full angle `angle_deg` around `axis`?
 pub(crate) fn is_in_cone(direction: Vec3, axis: Vec3, angle_deg: f64) -> bool {
     // 1 - cos from the chord, which keeps its digits for a disc as small as the sun's.
     let height = 0.5 * (direction - axis).length_squared();
     height <= 2.0 * (angle_deg.to_radians() / 4.0).sin().powi(2) * (1.0 + EDGE)
+}
+
+/// A ray that has come to a source: it faces the ray, far away.
+pub(crate) fn at_infinity(direction: Vec3) -> RayState {
+    RayState::new(direction * FAR_AWAY, -direction, direction, FAR_AWAY)
 }
 
 /// One `source`.
@@ -103,7 +112,9 @@ impl DistantSources {
     /// Radiance of all that lights and is no sun.
     fn dome_radiance(&self, direction: Vec3) -> Rgb {
         match self.seen(direction).map(|i| &self.sources[i]) {
-            Some(s) if !s.is_small() && s.emitter.illuminates() => s.emitter.radiance(direction),
+            Some(s) if !s.is_small() && s.emitter.illuminates() => {
+                s.emitter.radiance(&at_infinity(direction))
+            }
             _ => Rgb::ZERO,
         }
     }
@@ -140,7 +151,7 @@ impl DistantSources {
         LightSample {
             direction,
             distance: f64::INFINITY,
-            radiance: source.emitter.radiance(direction),
+            radiance: source.emitter.radiance(&at_infinity(direction)),
             pdf,
             solid_angle: source.solid_angle(),
             is_direct: source.emitter.is_direct(f64::INFINITY),
@@ -170,7 +181,7 @@ mod tests {
         let pattern =
             SkyDistribution::Cie { kind: CieSky::Clear, zenith: 10.0, ground: 3.0, normalization: 0.3, sun };
         let mut sky = source(Vec3::Z, 180.0, 1.0, EmitterKind::Glow { max_radius: 0.0 });
-        sky.emitter.patterns.push(pattern);
+        sky.emitter.patterns.push(crate::material::Step::Pattern(sunpeak_scene::Pattern::Sky(pattern)));
         let ground = source(Vec3::NEG_Z, 180.0, 2.0, EmitterKind::Glow { max_radius: 0.0 });
         DistantSources::new(vec![sky, ground, source(sun, 0.533, 1e6, EmitterKind::Light)])
     }

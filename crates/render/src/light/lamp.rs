@@ -5,7 +5,14 @@ use super::dome::{pick, running_sums};
 use crate::material::Emitter;
 use crate::shapes::{Cone, Ring, Sphere, Triangle};
 use std::f64::consts::PI;
-use sunpeak_core::{Frame, Vec3};
+use sunpeak_core::{Frame, Sampler, Vec3, luminance, warp};
+use sunpeak_scene::RayState;
+
+/// Points and directions at which a lamp's patterns are tried.
+const PATTERN_SAMPLES: u64 = 64;
+
+/// A lamp whose patterns were dark wherever they were tried is still looked at.
+const LEAST_PATTERN: f64 = 1e-3;
 
 /// Where the light leaves.
 #[derive(Clone, Debug)]
@@ -84,19 +91,38 @@ impl LampShape {
 impl Lamp {
     /// Luminous power over pi, for choosing among lamps.
     pub fn strength(&self) -> f64 {
-        sunpeak_core::luminance(self.emitter.radiance) * self.shape.area()
+        luminance(self.emitter.radiance) * self.shape.area() * self.mean_pattern()
+    }
+
+    /// What patterns do to the power, roughly, but never nothing: lamps are chosen by it.
+    fn mean_pattern(&self) -> f64 {
+        if self.emitter.patterns.is_empty() {
+            return 1.0;
+        }
+        let plain = luminance(self.emitter.radiance);
+        let (_, far) = self.shape.surroundings();
+        let one = |i| {
+            let mut sampler = Sampler::new(0, 0, i);
+            let (point, normal) = self.shape.sample_area(sampler.next_2d());
+            let away = Frame::from_normal(normal).to_world(warp::cosine_hemisphere(sampler.next_2d()));
+            let ray = RayState::new(point, normal, -away, 10.0 * far);
+            luminance(self.emitter.radiance(&ray)) / plain
+        };
+        let mean = (0..PATTERN_SAMPLES).map(one).sum::<f64>() / PATTERN_SAMPLES as f64;
+        if mean.is_finite() { mean.max(LEAST_PATTERN) } else { 1.0 }
     }
 
     /// A direction towards the lamp from `from`; `None` if its point shows its back.
     pub fn sample(&self, from: Vec3, u: [f64; 2]) -> Option<LightSample> {
         if let Some((direction, distance, pdf)) = self.sample_sphere(from, u) {
-            return Some(self.light_sample(direction, distance, pdf));
+            let normal = self.sphere_normal(from + direction * distance);
+            return Some(self.light_sample(from, direction, distance, normal, pdf));
         }
         let (point, normal) = self.shape.sample_area(u);
         let distance = point.distance(from);
         let direction = (point - from) / distance;
         let pdf = self.area_pdf(direction, distance, normal);
-        (pdf.is_finite() && pdf > 0.0).then(|| self.light_sample(direction, distance, pdf))
+        (pdf.is_finite() && pdf > 0.0).then(|| self.light_sample(from, direction, distance, normal, pdf))
     }
 
     /// Density [1/sr] of `sample` for a direction that meets the lamp at this distance, where its normal is `normal`.
@@ -135,11 +161,26 @@ impl Lamp {
         Some((direction, along - half_chord2.max(0.0).sqrt(), 1.0 / solid_angle))
     }
 
-    fn light_sample(&self, direction: Vec3, distance: f64, pdf: f64) -> LightSample {
+    fn sphere_normal(&self, point: Vec3) -> Vec3 {
+        match &self.shape {
+            LampShape::Sphere(sphere) => sphere.normal(point),
+            _ => Vec3::ZERO,
+        }
+    }
+
+    fn light_sample(
+        &self,
+        from: Vec3,
+        direction: Vec3,
+        distance: f64,
+        normal: Vec3,
+        pdf: f64,
+    ) -> LightSample {
+        let ray = RayState::new(from + direction * distance, normal, direction, distance);
         LightSample {
             direction,
             distance,
-            radiance: self.emitter.radiance(direction) * self.emitter.falloff(distance),
+            radiance: self.emitter.radiance(&ray) * self.emitter.falloff(distance),
             pdf,
             solid_angle: (1.0 / pdf).min(4.0 * PI),
             is_direct: self.emitter.is_direct(distance),
@@ -153,7 +194,7 @@ impl Lamp {
 mod tests {
     use super::*;
     use crate::material::EmitterKind;
-    use sunpeak_core::{Sampler, gray};
+    use sunpeak_core::gray;
 
     fn lamp(shape: LampShape) -> Lamp {
         let emitter = Emitter { radiance: gray(1.0), patterns: Vec::new(), kind: EmitterKind::Light };

@@ -9,17 +9,17 @@
 //! Every emitter that lights may be sampled here; the difference between the two kinds shows only where the number of
 //! bounces is limited, and with the peak rules that follow Radiance.
 
-use super::Alternate;
+use super::{Alternate, Step, tint_of};
 use sunpeak_core::{Rgb, Vec3};
-use sunpeak_sky::SkyDistribution;
+use sunpeak_scene::RayState;
 
 /// A self-luminous material.
 #[derive(Clone, Debug)]
 pub(crate) struct Emitter {
     /// Radiance before patterns [W sr⁻¹ m⁻²].
     pub radiance: Rgb,
-    /// Patterns that multiply it, over the ray's direction.
-    pub patterns: Vec<SkyDistribution>,
+    /// Patterns, and mixtures of them, that multiply it.
+    pub patterns: Vec<Step>,
     /// What kind it is.
     pub kind: EmitterKind,
 }
@@ -45,13 +45,14 @@ pub(crate) enum EmitterKind {
 }
 
 impl Emitter {
-    /// Radiance towards where a ray of this direction comes from.
-    pub fn radiance(&self, direction: Vec3) -> Rgb {
+    /// Radiance towards where the ray comes from. Patterns make nothing shine less than not at all.
+    pub fn radiance(&self, ray: &RayState) -> Rgb {
         match self.kind {
-            EmitterKind::Spotlight { axis, edge_cosine, .. } if axis.dot(-direction) < edge_cosine => {
+            EmitterKind::Spotlight { axis, edge_cosine, .. } if axis.dot(-ray.direction) < edge_cosine => {
                 Rgb::ZERO
             }
-            _ => self.patterns.iter().fold(self.radiance, |l, pattern| l * pattern.brightness(direction)),
+            _ if self.patterns.is_empty() => self.radiance,
+            _ => (self.radiance * tint_of(&self.patterns, ray)).max(Rgb::ZERO),
         }
     }
 

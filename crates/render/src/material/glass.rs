@@ -56,9 +56,10 @@ impl Glass {
     pub fn scatter(&self, arrival: &Arrival) -> Scattering<'static> {
         let cosine = arrival.cosine();
         Scattering {
-            straight: self.transmittance(cosine),
+            // Patterns multiply what comes through, and nothing else, as in Radiance.
+            straight: self.transmittance(cosine) * arrival.tint,
             mirrored: self.reflectance(cosine),
-            refracted: None,
+            refracted: [None; 2],
             smooth: Smooth::None,
         }
     }

@@ -1,17 +1,26 @@
 //! Materials, as Radiance's reference manual defines them, compiled for rendering.
 
+mod ashikhmin;
 mod dielectric;
 mod emitter;
+mod function;
 mod glass;
+mod prism;
 mod smooth;
 mod table;
+mod varying;
+mod volume;
 mod ward;
 
+pub(crate) use ashikhmin::Ashikhmin;
 pub(crate) use dielectric::Dielectric;
 pub(crate) use emitter::{Emitter, EmitterKind};
 pub(crate) use glass::Glass;
+pub(crate) use prism::Prism;
 pub(crate) use smooth::{Smooth, SmoothSample, SmoothValue};
 pub(crate) use table::Table;
+pub(crate) use varying::{Mixture, Step, Varying, fault_of, tint_of};
+pub(crate) use volume::{Air, Antimatter, Flight, Inside, Mist};
 pub(crate) use ward::WardMaterial;
 
 use sunpeak_core::{Rgb, Vec3};
@@ -26,11 +35,13 @@ pub(crate) type Alternate = Option<MaterialId>;
 /// A material, ready to be asked.
 #[derive(Debug)]
 pub(crate) enum Material {
-    /// `plastic`, `metal`, `trans`.
+    /// `plastic`, `metal`, `trans`, and `plastic2`, `metal2`, `trans2`.
     Ward(WardMaterial),
+    /// `ashik2`.
+    Ashikhmin(Ashikhmin),
     /// `glass`.
     Glass(Glass),
-    /// `dielectric`.
+    /// `dielectric`, `interface`.
     Dielectric(Dielectric),
     /// `mirror`.
     Mirror(Mirror),
@@ -38,6 +49,16 @@ pub(crate) enum Material {
     Emitter(Emitter),
     /// `BSDF`, `aBSDF`.
     Table(Table),
+    /// `mist`: the surface itself does nothing.
+    Mist(Mist),
+    /// `antimatter`, likewise.
+    Antimatter(Antimatter),
+    /// `plasfunc`, `BRTDfunc` and their like.
+    Function(Box<sunpeak_scene::FunctionMaterial>),
+    /// `prism1`, `prism2`.
+    Prism(Prism),
+    /// Any of these with patterns, textures or mixtures. Only the world can tell which, so that to the questions here it is nothing.
+    Varying(Varying),
 }
 
 /// A planar mirror: reflects at its front, its back is black.
@@ -52,16 +73,41 @@ pub(crate) struct Mirror {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Arrival {
     pub point: Vec3,
-    /// Unit normal of the surface's front.
+    /// Unit normal of the surface's front, by which it scatters: in a mesh interpolated, always on the ray's side.
     pub normal: Vec3,
+    /// Unit normal of the front as the surface lies.
+    pub flat_normal: Vec3,
     /// Unit direction of the ray.
     pub direction: Vec3,
+    /// What patterns multiply the material's colour with.
+    pub tint: Rgb,
+    /// Way of the ray since it was last scattered [m].
+    pub distance: f64,
+    /// Way since the camera [m].
+    pub travelled: f64,
 }
 
 impl Arrival {
+    pub fn new(point: Vec3, normal: Vec3, direction: Vec3) -> Self {
+        Self { point, normal, flat_normal: normal, direction, tint: Rgb::ONE, distance: 0.0, travelled: 0.0 }
+    }
+
+    /// The same with a smoothed normal. One that looks away from the ray is mirrored to its side (as Radiance does).
+    pub fn smoothed(self, normal: Vec3) -> Self {
+        let cosine = normal.dot(self.direction);
+        let is_away = (cosine < 0.0) != self.at_front();
+        let normal = if is_away { normal - self.direction * (2.0 * cosine) } else { normal };
+        Self { normal: normal.try_normalize().unwrap_or(self.flat_normal), ..self }
+    }
+
+    /// The same at a surface that is turned around.
+    pub fn turned(&self) -> Self {
+        Self { normal: -self.normal, flat_normal: -self.flat_normal, ..*self }
+    }
+
     /// Did the ray come from the front?
     pub fn at_front(&self) -> bool {
-        self.direction.dot(self.normal) < 0.0
+        self.direction.dot(self.flat_normal) < 0.0
     }
 
     /// The normal on the ray's side.
@@ -74,9 +120,17 @@ impl Arrival {
         self.direction.dot(self.normal).abs()
     }
 
-    /// Direction of the mirrored ray.
+    /// Is a direction on the same side of the surface as it lies and as its normal is bent?
+    pub fn agrees_on(&self, direction: Vec3) -> bool {
+        self.normal == self.flat_normal
+            || (direction.dot(self.normal) > 0.0) == (direction.dot(self.flat_normal) > 0.0)
+    }
+
+    /// Direction of the mirrored ray, not into the surface.
     pub fn mirrored(&self) -> Vec3 {
-        reflect(self.direction, self.normal)
+        let mirrored = reflect(self.direction, self.normal);
+        let is_outside = (mirrored.dot(self.flat_normal) > 0.0) == self.at_front();
+        if is_outside { mirrored } else { reflect(self.direction, self.flat_normal) }
     }
 }
 
@@ -92,8 +146,8 @@ pub(crate) struct Scattering<'w> {
     pub straight: Rgb,
     /// Share that is mirrored.
     pub mirrored: Rgb,
-    /// Share that is refracted, and where to.
-    pub refracted: Option<(Vec3, Rgb)>,
+    /// Where rays are refracted to, and with what share; a prism has two ways.
+    pub refracted: [Option<(Vec3, Rgb)>; 2],
     /// All the rest.
     pub smooth: Smooth<'w>,
 }
@@ -101,7 +155,7 @@ pub(crate) struct Scattering<'w> {
 impl Scattering<'_> {
     /// Nothing comes back from the surface.
     pub const BLACK: Scattering<'static> =
-        Scattering { straight: Rgb::ZERO, mirrored: Rgb::ZERO, refracted: None, smooth: Smooth::None };
+        Scattering { straight: Rgb::ZERO, mirrored: Rgb::ZERO, refracted: [None; 2], smooth: Smooth::None };
 }
 
 impl Material {
@@ -109,12 +163,16 @@ impl Material {
     pub fn scatter(&self, arrival: &Arrival, view: bool) -> Scattering<'_> {
         match self {
             Self::Ward(m) => m.scatter(arrival),
+            Self::Ashikhmin(m) => m.scatter(arrival),
             Self::Glass(m) => m.scatter(arrival),
             Self::Dielectric(m) => m.scatter(arrival),
             Self::Mirror(m) if arrival.at_front() => {
-                Scattering { mirrored: m.reflectance, ..Scattering::BLACK }
+                Scattering { mirrored: m.reflectance * arrival.tint, ..Scattering::BLACK }
             }
-            Self::Mirror(_) | Self::Emitter(_) => Scattering::BLACK,
+            Self::Function(m) => function::scatter(m, arrival),
+            Self::Prism(m) => m.scatter(arrival),
+            Self::Mirror(_) | Self::Emitter(_) | Self::Varying(_) => Scattering::BLACK,
+            Self::Mist(_) | Self::Antimatter(_) => Scattering { straight: Rgb::ONE, ..Scattering::BLACK },
             Self::Table(m) => m.scatter(arrival, view),
         }
     }
@@ -124,9 +182,16 @@ impl Material {
     pub fn straight(&self, arrival: &Arrival, direct: bool) -> Rgb {
         match self {
             Self::Ward(m) => m.straight(arrival),
-            Self::Glass(m) => m.transmittance(arrival.cosine()),
+            Self::Glass(m) => m.transmittance(arrival.cosine()) * arrival.tint,
             Self::Table(m) => m.straight(arrival, direct),
-            Self::Dielectric(_) | Self::Mirror(_) | Self::Emitter(_) => Rgb::ZERO,
+            Self::Mist(_) | Self::Antimatter(_) => Rgb::ONE,
+            Self::Function(m) => function::straight(m, arrival),
+            Self::Prism(_) => Rgb::ZERO,
+            Self::Ashikhmin(_)
+            | Self::Dielectric(_)
+            | Self::Mirror(_)
+            | Self::Emitter(_)
+            | Self::Varying(_) => Rgb::ZERO,
         }
     }
 
@@ -134,8 +199,9 @@ impl Material {
     pub fn is_shade(&self) -> bool {
         match self {
             Self::Ward(m) => m.is_trans(),
+            Self::Function(m) => (m.diffuse_transmission + m.transmission).max_element() > 0.0,
             Self::Table(_) => true,
-            Self::Glass(_) | Self::Dielectric(_) | Self::Mirror(_) | Self::Emitter(_) => false,
+            _ => false,
         }
     }
 
@@ -143,10 +209,12 @@ impl Material {
     /// mirror altogether.
     pub fn is_transparent(&self) -> bool {
         match self {
-            Self::Glass(_) | Self::Dielectric(_) => true,
+            Self::Glass(_) | Self::Dielectric(_) | Self::Mist(_) | Self::Antimatter(_) => true,
             Self::Ward(m) => m.is_trans(),
+            Self::Function(m) => (m.diffuse_transmission + m.transmission).max_element() > 0.0,
+            Self::Prism(_) => true,
             Self::Table(m) => m.is_aperture,
-            Self::Mirror(_) | Self::Emitter(_) => false,
+            Self::Ashikhmin(_) | Self::Mirror(_) | Self::Emitter(_) | Self::Varying(_) => false,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The smooth part of a material at one point: what shadow rays are weighted with and directions are sampled from.
 
-use super::{table::TableLobes, ward::WardLobes};
+use super::function::FunctionLobes;
+use super::{ashikhmin::AshikhminLobes, table::TableLobes, volume::Phase, ward::WardLobes};
 use std::f64::consts::FRAC_1_PI;
 use sunpeak_core::{Frame, Rgb, Sampler, Vec3, warp};
 
@@ -45,8 +46,14 @@ pub(crate) enum Smooth<'w> {
     Sensor(Frame),
     /// Diffuse and Gaussian lobes.
     Ward(WardLobes),
+    /// Ashikhmin's and Shirley's lobes.
+    Ashikhmin(AshikhminLobes),
     /// A table and diffuse lobes.
     Table(TableLobes<'w>),
+    /// A function and diffuse lobes.
+    Function(Box<FunctionLobes<'w>>),
+    /// Air that scatters; there is no surface, and no cosine.
+    Phase(Phase),
 }
 
 impl Smooth<'_> {
@@ -56,7 +63,10 @@ impl Smooth<'_> {
             Self::None => 0.0,
             Self::Sensor(_) => 1.0,
             Self::Ward(lobes) => lobes.albedo(),
+            Self::Ashikhmin(lobes) => lobes.albedo(),
             Self::Table(lobes) => lobes.albedo(),
+            Self::Function(lobes) => lobes.albedo(),
+            Self::Phase(_) => 1.0,
         }
     }
 
@@ -69,7 +79,26 @@ impl Smooth<'_> {
                 SmoothValue { diffuse: front, glossy: Rgb::ZERO }
             }
             Self::Ward(lobes) => lobes.evaluate(direction),
+            Self::Ashikhmin(lobes) => lobes.evaluate(direction),
             Self::Table(lobes) => lobes.evaluate(direction),
+            Self::Function(lobes) => lobes.evaluate(direction),
+            Self::Phase(phase) => SmoothValue { diffuse: phase.evaluate(direction), glossy: Rgb::ZERO },
+        }
+    }
+
+    /// Cosine to a surface's normal, by which light counts.
+    pub fn cosine(&self, direction: Vec3, normal: Vec3) -> f64 {
+        match self {
+            Self::Phase(_) => 1.0,
+            _ => direction.dot(normal).abs(),
+        }
+    }
+
+    /// How far from the surface light in this direction starts: the other side of what a table with thickness stands for.
+    pub fn offset(&self, direction: Vec3) -> Vec3 {
+        match self {
+            Self::Table(lobes) => lobes.offset(direction),
+            _ => Vec3::ZERO,
         }
     }
 
@@ -78,6 +107,7 @@ impl Smooth<'_> {
         match self {
             Self::Ward(lobes) => lobes.evaluate(direction).scaled(lobes.source_factor(direction)),
             Self::Table(lobes) => lobes.toward_source(direction, solid_angle),
+            Self::Function(lobes) => lobes.toward_source(direction, solid_angle),
             _ => self.evaluate(direction),
         }
     }
@@ -87,19 +117,21 @@ impl Smooth<'_> {
         match self {
             Self::Ward(lobes) => lobes.source_factor(direction),
             Self::Table(lobes) if lobes.has_source_rule() => 0.0,
+            Self::Function(_) => 0.0,
             _ => 1.0,
         }
     }
 
     /// Are directions best drawn with a guide's help? Not where a table knows better.
     pub fn can_be_guided(&self) -> bool {
-        matches!(self, Self::Sensor(_) | Self::Ward(_))
+        matches!(self, Self::Sensor(_) | Self::Ward(_) | Self::Ashikhmin(_) | Self::Function(_))
     }
 
     /// May sampled directions find light sources? Not where `toward_source` is a rule of its own.
     pub fn samples_find_sources(&self) -> bool {
         match self {
             Self::Table(lobes) => !lobes.has_source_rule(),
+            Self::Function(_) => false,
             _ => true,
         }
     }
@@ -110,7 +142,10 @@ impl Smooth<'_> {
             Self::None => 0.0,
             Self::Sensor(frame) => direction.dot(frame.z).max(0.0) * FRAC_1_PI,
             Self::Ward(lobes) => lobes.pdf(direction),
+            Self::Ashikhmin(lobes) => lobes.pdf(direction),
             Self::Table(lobes) => lobes.pdf(direction),
+            Self::Function(lobes) => lobes.pdf(direction),
+            Self::Phase(phase) => phase.pdf(direction),
         }
     }
 
@@ -126,7 +161,10 @@ impl Smooth<'_> {
                 (pdf > 0.0).then_some(SmoothSample { direction, weight, pdf, source_factor: 1.0 })
             }
             Self::Ward(lobes) => lobes.sample(sampler.next_1d(), sampler.next_2d()),
+            Self::Ashikhmin(lobes) => lobes.sample(sampler.next_1d(), sampler.next_2d()),
             Self::Table(lobes) => lobes.sample(sampler.next_1d(), sampler.next_2d(), sampler.next_1d()),
+            Self::Function(lobes) => lobes.sample(sampler.next_1d(), sampler.next_2d()),
+            Self::Phase(phase) => Some(phase.sample(sampler.next_1d(), sampler.next_2d())),
         }
     }
 }

@@ -4,6 +4,12 @@
 //! The rules of Radiance and of the paper are not a decomposition: the delta is for shadow rays to light sources and for
 //! view rays only; towards light sources the table is muted around the straight direction; samples of view rays there are
 //! dropped; everybody else sees the whole table. Here they do what the reference does, its double counting included.
+//!
+//! A `BSDF` with thickness stands for geometry that is there too (manual, "BSDF"): view and shadow rays pass and meet that
+//! geometry, and so do rays from its side; a scattered ray that comes from outside meets the table, and what it sends through
+//! starts beyond the geometry. What the table lets through straight is what shadow rays find between the parts of the geometry:
+//! with the split it goes straight, and emitters behind it are left to shadow rays; so nothing counts twice. (With the other
+//! rules such a table is whole, and the straight light of an emitter does count twice, as in Radiance.)
 
 use super::{Arrival, Scattering, Smooth, SmoothValue, smooth::SmoothSample};
 use std::{f64::consts::FRAC_1_PI, sync::Arc};
@@ -16,6 +22,8 @@ pub(crate) struct Table {
     pub bsdf: Arc<Bsdf>,
     /// Is it an `aBSDF`?
     pub is_aperture: bool,
+    /// What it stands for reaches this far behind its front, or, negative, before it [m].
+    pub thickness: f64,
     pub rule: PeakRule,
     /// Up vector, world axes.
     pub up: Vec3,
@@ -34,6 +42,21 @@ impl Table {
         if self.mirrored { Frame { x: -frame.x, ..frame } } else { frame }
     }
 
+    /// Does it stand for geometry that is there too?
+    pub fn is_proxy(&self) -> bool {
+        self.thickness != 0.0
+    }
+
+    /// Is it invisible to a ray that is no shadow ray? `view`: the ray comes from the camera and met only mirrors and clear panes.
+    pub fn is_passed(&self, arrival: &Arrival, view: bool) -> bool {
+        self.is_proxy() && (view || (self.thickness > 0.0) != arrival.at_front())
+    }
+
+    /// How far from the surface transmitted light starts.
+    pub fn offset(&self, normal: Vec3) -> Vec3 {
+        normal * -self.thickness
+    }
+
     pub fn is_reference_rule(&self) -> bool {
         matches!(self.rule, PeakRule::Radiance | PeakRule::Paper)
     }
@@ -44,20 +67,22 @@ impl Table {
         if self.rule == PeakRule::Off || (self.is_reference_rule() && !direct) {
             return Rgb::ZERO;
         }
-        self.bsdf.through(self.frame(arrival.normal).to_local(-arrival.direction), self.rule)
+        self.bsdf.through(self.frame(arrival.normal).to_local(-arrival.direction), self.rule) * arrival.tint
     }
 
     pub fn scatter(&self, arrival: &Arrival, view: bool) -> Scattering<'_> {
         let frame = self.frame(arrival.normal);
         let w_in = frame.to_local(-arrival.direction);
         let goes_straight = self.rule == PeakRule::Split || (self.is_reference_rule() && view);
-        let straight = if goes_straight { self.bsdf.through(w_in, self.rule) } else { Rgb::ZERO };
+        let straight =
+            if goes_straight { self.bsdf.through(w_in, self.rule) * arrival.tint } else { Rgb::ZERO };
         let hemispherical = |mode| luminance(self.bsdf.hemispherical_smooth(w_in, mode, self.rule));
         let lobes = TableLobes {
             table: self,
             frame,
             w_in,
             view,
+            tint: arrival.tint,
             diffuse_reflection: if arrival.at_front() { self.front_diffuse } else { self.back_diffuse },
             sides: Sides {
                 reflected: hemispherical(Mode::Reflection),
@@ -65,7 +90,7 @@ impl Table {
             },
         };
         let smooth = if lobes.albedo() > 0.0 { Smooth::Table(lobes) } else { Smooth::None };
-        Scattering { straight, mirrored: Rgb::ZERO, refracted: None, smooth }
+        Scattering { straight, mirrored: Rgb::ZERO, refracted: [None; 2], smooth }
     }
 }
 
@@ -76,6 +101,8 @@ pub(crate) struct TableLobes<'w> {
     frame: Frame,
     w_in: Vec3,
     view: bool,
+    /// What patterns multiply everything with.
+    tint: Rgb,
     diffuse_reflection: Rgb,
     sides: Sides,
 }
@@ -135,6 +162,11 @@ impl TableLobes<'_> {
         self.weights().iter().sum()
     }
 
+    pub fn offset(&self, direction: Vec3) -> Vec3 {
+        let is_transmission = direction.dot(self.frame.z) * self.w_in.z < 0.0;
+        if is_transmission { self.table.offset(self.frame.z) } else { Vec3::ZERO }
+    }
+
     pub fn has_source_rule(&self) -> bool {
         self.table.is_reference_rule()
     }
@@ -142,7 +174,7 @@ impl TableLobes<'_> {
     fn diffuse(&self, w_out: Vec3) -> Rgb {
         let is_reflection = w_out.z * self.w_in.z > 0.0;
         let share = if is_reflection { self.diffuse_reflection } else { self.table.diffuse_transmission };
-        share * FRAC_1_PI
+        share * self.tint * FRAC_1_PI
     }
 
     pub fn evaluate(&self, direction: Vec3) -> SmoothValue {
@@ -150,7 +182,7 @@ impl TableLobes<'_> {
         let glossy = if self.is_muted(w_out) {
             Rgb::ZERO
         } else {
-            self.table.bsdf.evaluate_smooth(self.w_in, w_out, self.table.rule)
+            self.table.bsdf.evaluate_smooth(self.w_in, w_out, self.table.rule) * self.tint
         };
         SmoothValue { diffuse: self.diffuse(w_out), glossy }
     }
@@ -168,7 +200,7 @@ impl TableLobes<'_> {
         }
         let w_out = self.frame.to_local(direction);
         let glossy = self.table.bsdf.evaluate_to_source(self.w_in, w_out, solid_angle, self.table.rule);
-        SmoothValue { diffuse: self.diffuse(w_out), glossy }
+        SmoothValue { diffuse: self.diffuse(w_out), glossy: glossy * self.tint }
     }
 
     pub fn pdf(&self, direction: Vec3) -> f64 {

@@ -1,12 +1,14 @@
 //! Shapes that rays can hit. All tests run in double precision; a ray may start on the surface that it left.
 
 mod cone;
+mod mesh;
 mod polygon;
 mod ring;
 mod sphere;
 mod triangle;
 
 pub(crate) use cone::Cone;
+pub(crate) use mesh::SmoothMesh;
 pub(crate) use polygon::Polygon;
 pub(crate) use ring::Ring;
 pub(crate) use sphere::Sphere;

@@ -41,6 +41,14 @@ impl Triangle {
         0.5 * (b - a).cross(c - a)
     }
 
+    /// Weights of the corners that make a point of its plane.
+    pub fn weights(&self, point: Vec3) -> [f64; 3] {
+        let [a, b, c] = self.0;
+        let whole = (b - a).cross(c - a);
+        let share = |p: Vec3, q: Vec3| (p - point).cross(q - point).dot(whole) / whole.length_squared();
+        [share(b, c), share(c, a), share(a, b)]
+    }
+
     /// A uniformly distributed point (Heitz 2019, "A Low-Distortion Map Between Triangle and Square").
     pub fn sample([u, v]: [f64; 2], [a, b, c]: [Vec3; 3]) -> Vec3 {
         let (s, t) = if v > u { (0.5 * u, v - 0.5 * u) } else { (u - 0.5 * v, 0.5 * v) };

@@ -6,26 +6,28 @@ use crate::accel::{Accel, Geometry, Primitive};
 use crate::guide::Guide;
 use crate::light::{Distant, DistantSources, Lamp, LampShape, Lamps};
 use crate::material::{
-    Alternate, Dielectric, Emitter, EmitterKind, Glass, Material, MaterialId, Mirror, Table, WardMaterial,
+    Alternate, Antimatter, Ashikhmin, Dielectric, Emitter, EmitterKind, Glass, Material, MaterialId, Mirror,
+    Mist, Mixture, Prism, Step, Table, Varying, WardMaterial,
 };
-use crate::shapes::{Analytic, Cone, Polygon, Ring, Sphere, Triangle};
+use crate::shapes::{Analytic, Cone, Polygon, Ring, SmoothMesh, Sphere, Triangle};
 use std::{collections::HashMap, path::Path, sync::Arc};
 use sunpeak_bsdf::{Bsdf, PeakRule};
 use sunpeak_core::{Error, Frame, Location, Result, Vec3};
-use sunpeak_scene::{
-    BsdfMaterial, Material as Said, ModifierId, ModifierKind, Pattern, Scene, Shape, Surface,
-};
-use sunpeak_sky::SkyDistribution;
+use sunpeak_scene::{BsdfMaterial, Material as Said, Mesh, ModifierId, ModifierKind, Scene, Shape, Surface};
 
 /// Modifiers may name each other this deep; more is a circle.
 const MAX_MODIFIER_DEPTH: usize = 100;
+
+/// Triangles of a mesh that shadow rays look for one by one.
+const MAX_LAMPS_OF_MESH: usize = 64;
 
 /// Thickness up to this is none [m] (Radiance, `FTINY`).
 const NO_THICKNESS: f64 = 1e-6;
 
 pub(super) fn compile(scene: &Scene, options: &WorldOptions) -> Result<World> {
     let mut compiler = Compiler::new(scene, options);
-    for surface in &scene.surfaces {
+    for (index, surface) in scene.surfaces.iter().enumerate() {
+        compiler.current = index as u32;
         compiler.add(surface)?;
     }
     compiler.finish()
@@ -43,9 +45,15 @@ struct Compiler<'s> {
     sources: Vec<Distant>,
     lamps: Vec<Lamp>,
     mirrors: Vec<u32>,
+    prisms: Vec<(u32, Vec3)>,
     shades: Vec<Triangle>,
+    meshes: Vec<SmoothMesh>,
     /// Of each object: where its modifier stands in the scene. Of surfaces at the same place the later is seen.
     ranks: Vec<u32>,
+    /// Of each object: which surface of the scene it is.
+    surfaces: Vec<u32>,
+    /// The surface that is being taken in.
+    current: u32,
 }
 
 impl<'s> Compiler<'s> {
@@ -62,24 +70,34 @@ impl<'s> Compiler<'s> {
             sources: Vec::new(),
             lamps: Vec::new(),
             mirrors: Vec::new(),
+            prisms: Vec::new(),
             shades: Vec::new(),
+            meshes: Vec::new(),
             ranks: Vec::new(),
+            surfaces: Vec::new(),
+            current: 0,
         }
     }
 
     fn finish(self) -> Result<World> {
         let distant = DistantSources::new(self.sources);
+        let is_volume = |m: &Material| matches!(m, Material::Mist(_) | Material::Antimatter(_));
+        let has_volumes = self.materials.iter().any(is_volume);
         let suns = distant.suns().iter().map(|&sun| distant.get(sun).direction).collect();
         Ok(World {
             accel: Accel::build(self.primitives, self.analytic)?,
             objects: self.objects,
+            surfaces: self.surfaces,
             materials: self.materials,
             distant,
             lamps: Lamps::new(self.lamps),
             mirrors: self.mirrors,
+            prisms: self.prisms,
             rule: self.options.peak,
             rays: Default::default(),
             guide: Guide::new(self.shades, suns),
+            meshes: self.meshes,
+            has_volumes,
         })
     }
 
@@ -102,6 +120,7 @@ impl<'s> Compiler<'s> {
                 let ring = Ring { center, normal, inner_radius, outer_radius };
                 self.add_analytic(surface, material, Analytic::Ring(ring), LampShape::Ring(ring))?;
             }
+            Shape::Mesh(mesh) => self.add_mesh(surface, material, mesh)?,
         }
         Ok(())
     }
@@ -124,12 +143,47 @@ impl<'s> Compiler<'s> {
         match polygon.triangulate() {
             Some(triangles) => {
                 self.add_lamp(object, material, LampShape::triangles(triangles.clone(), normal));
-                if self.materials[material.0 as usize].is_shade() {
+                if self.is_any(material, Material::is_shade) {
                     self.shades.extend(&triangles);
                 }
                 triangles.into_iter().for_each(|t| self.add_primitive(object, Geometry::Triangle(t)));
             }
             None => self.add_shape(object, Analytic::Polygon(polygon)),
+        }
+        Ok(())
+    }
+
+    /// Each triangle is an object of its own: it has its own normals.
+    fn add_mesh(&mut self, surface: &Surface, material: MaterialId, mesh: &Mesh) -> Result<()> {
+        if mesh.vertices.iter().any(|v| !v.is_finite()) {
+            return Err(Error::input(
+                surface.location.clone(),
+                "a vertex of the mesh is not a finite number",
+            ));
+        }
+        let index = self.meshes.len() as u32;
+        let is_smooth = |t: &&[u32; 3]| SmoothMesh::is_smooth(mesh, **t);
+        if mesh.triangles.iter().any(|t| is_smooth(&t)) {
+            self.meshes.push(SmoothMesh(mesh.clone()));
+        }
+        // Light from more triangles than this is left to paths.
+        let are_lamps = mesh.triangles.len() <= MAX_LAMPS_OF_MESH;
+        let is_shade = self.is_any(material, Material::is_shade);
+        for (i, corners) in mesh.triangles.iter().enumerate() {
+            let triangle = Triangle(corners.map(|i| mesh.vertices[i as usize]));
+            let Some(normal) = triangle.area_vector().try_normalize() else { continue };
+            let facing = match is_smooth(&corners) {
+                true => Facing::Smooth { mesh: index, triangle: i as u32 },
+                false => Facing::Flat(normal),
+            };
+            let object = self.add_object(surface, material, facing)?;
+            if are_lamps {
+                self.add_lamp(object, material, LampShape::triangles(vec![triangle], normal));
+            }
+            if is_shade {
+                self.shades.push(triangle);
+            }
+            self.add_primitive(object, Geometry::Triangle(triangle));
         }
         Ok(())
     }
@@ -165,28 +219,45 @@ impl<'s> Compiler<'s> {
 
     fn add_primitive(&mut self, object: u32, geometry: Geometry) {
         let material = self.objects[object as usize].material;
-        let is_opaque = !self.materials[material.0 as usize].is_transparent();
+        let is_opaque = !self.is_any(material, Material::is_transparent);
         self.primitives.push(Primitive { geometry, object, is_opaque, rank: self.ranks[object as usize] });
     }
 
     fn add_object(&mut self, surface: &Surface, material: MaterialId, facing: Facing) -> Result<u32> {
         let object = self.objects.len() as u32;
-        match (&self.materials[material.0 as usize], facing) {
-            (Material::Table(table), Facing::Flat(normal))
-                if Frame::from_normal_up(normal, table.up).is_none() =>
-            {
-                let message = format!(
-                    "the BSDF's up vector {} runs along the surface's normal; give one across",
-                    table.up
-                );
-                return Err(Error::input(surface.location.clone(), message));
+        for id in self.seen_materials(material) {
+            match (&self.materials[id.0 as usize], facing) {
+                (Material::Table(table), Facing::Flat(normal))
+                    if Frame::from_normal_up(normal, table.up).is_none() =>
+                {
+                    let message = format!(
+                        "the BSDF's up vector {} runs along the surface's normal; give one across",
+                        table.up
+                    );
+                    return Err(Error::input(surface.location.clone(), message));
+                }
+                (Material::Mirror(_), Facing::Flat(_)) => self.mirrors.push(object),
+                (Material::Prism(_), Facing::Flat(_)) => self.prisms.push((object, a_point(&surface.shape))),
+                _ => {}
             }
-            (Material::Mirror(_), Facing::Flat(_)) => self.mirrors.push(object),
-            _ => {}
         }
+        self.surfaces.push(self.current);
         self.ranks.push(surface.modifier.map_or(0, |id| id.0 as u32));
         self.objects.push(Object { material, facing, lamp: None });
         Ok(object)
+    }
+
+    /// The materials that may be seen of this one: several of a mixture.
+    fn seen_materials(&self, id: MaterialId) -> Vec<MaterialId> {
+        match &self.materials[id.0 as usize] {
+            Material::Varying(varying) => varying.materials(),
+            _ => vec![id],
+        }
+    }
+
+    fn is_any(&self, id: MaterialId, test: impl Fn(&Material) -> bool) -> bool {
+        let has_gaps = matches!(&self.materials[id.0 as usize], Material::Varying(v) if v.has_gaps());
+        has_gaps || self.seen_materials(id).into_iter().any(|id| test(&self.materials[id.0 as usize]))
     }
 
     fn add_lamp(&mut self, object: u32, material: MaterialId, shape: Option<LampShape>) {
@@ -212,9 +283,20 @@ impl<'s> Compiler<'s> {
         Ok(compiled)
     }
 
-    /// Patterns before and behind the first material of the chain all multiply it.
+    /// Patterns, textures and mixtures before and behind the material of the chain all count for it.
     fn compile_chain(&mut self, id: ModifierId, user: &Location, depth: usize) -> Result<Alternate> {
-        let mut patterns = Vec::new();
+        let (varying, emitter) = self.varying(id, user, depth)?;
+        let material = match (varying.material, varying.steps.is_empty() || emitter) {
+            (None, _) if !varying.mixes_materials => None,
+            (material, true) => material,
+            _ => Some(self.push(Material::Varying(varying))),
+        };
+        Ok(material)
+    }
+
+    /// A chain of modifiers, and whether its material is an emitter, which holds its patterns itself.
+    fn varying(&mut self, id: ModifierId, user: &Location, depth: usize) -> Result<(Varying, bool)> {
+        let mut varying = Varying::default();
         let mut said: Option<(&'s Said, &'s Location)> = None;
         let mut next = Some(id);
         let mut steps = 0;
@@ -225,13 +307,20 @@ impl<'s> Compiler<'s> {
             };
             steps += 1;
             match &modifier.kind {
-                ModifierKind::Pattern(Pattern::Sky(sky)) => patterns.push(*sky),
+                ModifierKind::Pattern(pattern) => varying.steps.push(Step::Pattern(pattern.clone())),
+                ModifierKind::Texture(field) => varying.steps.push(Step::Texture(field.clone())),
+                ModifierKind::Mixture { fore, back, weight } => {
+                    let [fore, back] = [*fore, *back].map(|part| self.part(part, user, depth + 1));
+                    let mixture = Mixture { fore: fore?, back: back?, weight: weight.clone() };
+                    varying.mixes_materials |= mixture.mixes_materials();
+                    varying.steps.push(Step::Mixture(Box::new(mixture)));
+                }
                 ModifierKind::Material(material) if said.is_none() => {
                     said = Some((material, &modifier.location))
                 }
                 ModifierKind::Material(_) => {
                     let message = format!(
-                        "material \"{}\" modifies another material; only patterns can",
+                        "material \"{}\" modifies another material; only patterns, textures and mixtures can",
                         modifier.name
                     );
                     return Err(Error::input(modifier.location.clone(), message));
@@ -239,27 +328,41 @@ impl<'s> Compiler<'s> {
             }
             next = modifier.parent;
         }
-        let Some((said, location)) = said else { return Ok(None) };
-        let material = self.compile_material(said, patterns, location, depth)?;
-        self.materials.push(material);
-        Ok(Some(MaterialId(self.materials.len() as u32 - 1)))
-    }
-
-    fn compile_material(
-        &mut self,
-        said: &'s Said,
-        patterns: Vec<SkyDistribution>,
-        location: &Location,
-        depth: usize,
-    ) -> Result<Material> {
-        if let Some(emitter) = self.compile_emitter(said, &patterns, location, depth)? {
-            return Ok(Material::Emitter(emitter));
-        }
-        if !patterns.is_empty() {
-            let message =
-                "a sky pattern on a material that does not shine is not supported; put it on a glow or light";
+        let Some((said, location)) = said else { return Ok((varying, false)) };
+        if varying.mixes_materials {
+            let message = "a mixture of materials and another material: a surface can have only one";
             return Err(Error::input(location.clone(), message));
         }
+        let emitter = self.compile_emitter(said, &varying.steps, location, depth)?;
+        let is_emitter = emitter.is_some();
+        let material = match emitter {
+            Some(emitter) => Material::Emitter(emitter),
+            None => self.compile_material(said, location, depth)?,
+        };
+        varying.material = Some(self.push(material));
+        Ok((varying, is_emitter))
+    }
+
+    /// One side of a mixture.
+    fn part(&mut self, id: Option<ModifierId>, user: &Location, depth: usize) -> Result<Varying> {
+        let Some(id) = id else { return Ok(Varying::default()) };
+        if depth > MAX_MODIFIER_DEPTH {
+            return Err(Error::input(user.clone(), "the modifiers of this surface go round in a circle"));
+        }
+        let (mut varying, is_emitter) = self.varying(id, user, depth)?;
+        if is_emitter {
+            // It holds its patterns itself.
+            varying.steps.clear();
+        }
+        Ok(varying)
+    }
+
+    fn push(&mut self, material: Material) -> MaterialId {
+        self.materials.push(material);
+        MaterialId(self.materials.len() as u32 - 1)
+    }
+
+    fn compile_material(&mut self, said: &'s Said, location: &Location, depth: usize) -> Result<Material> {
         Ok(match said {
             Said::Plastic(ward) => Material::Ward(WardMaterial::opaque(ward, false)),
             Said::Metal(ward) => Material::Ward(WardMaterial::opaque(ward, true)),
@@ -272,6 +375,23 @@ impl<'s> Compiler<'s> {
             &Said::Dielectric { transmission, index, hartmann } => {
                 Material::Dielectric(Dielectric::new(transmission, checked_index(index, location)?, hartmann))
             }
+            Said::Interface { inside, outside } => {
+                Material::Dielectric(Dielectric::interface(inside, outside))
+            }
+            &Said::Ashikhmin { diffuse, specular, powers, orientation } => {
+                Material::Ashikhmin(Ashikhmin { diffuse, specular, powers, orientation })
+            }
+            &Said::Mist { extinction, albedo, eccentricity, .. } => {
+                Material::Mist(Mist { extinction, albedo, eccentricity })
+            }
+            Said::Antimatter { clipped, face } => {
+                let mut materials = Vec::new();
+                for &id in clipped {
+                    materials.extend(self.alternate(Some(id), location, depth)?);
+                }
+                let face = self.alternate(*face, location, depth)?;
+                Material::Antimatter(Antimatter { clipped: materials, face })
+            }
             Said::Mirror { reflectance, alternate } => {
                 let alternate = match alternate {
                     None => None,
@@ -279,7 +399,9 @@ impl<'s> Compiler<'s> {
                 };
                 Material::Mirror(Mirror { reflectance: *reflectance, alternate })
             }
-            Said::Bsdf(bsdf) => Material::Table(self.compile_table(bsdf, location)?),
+            Said::Bsdf(bsdf) => Material::Table(self.compile_table(bsdf)?),
+            Said::Function(function) => Material::Function(function.clone()),
+            Said::Prism { field, ways } => Material::Prism(Prism { field: field.clone(), ways: *ways }),
             Said::Light(_) | Said::Illum { .. } | Said::Glow { .. } | Said::Spotlight { .. } => {
                 return Err(Error::input(location.clone(), "an emitter that is none"));
             }
@@ -289,7 +411,7 @@ impl<'s> Compiler<'s> {
     fn compile_emitter(
         &mut self,
         said: &Said,
-        patterns: &[SkyDistribution],
+        steps: &[Step],
         location: &Location,
         depth: usize,
     ) -> Result<Option<Emitter>> {
@@ -309,7 +431,9 @@ impl<'s> Compiler<'s> {
             }
             _ => return Ok(None),
         };
-        Ok(Some(Emitter { radiance, patterns: patterns.to_vec(), kind }))
+        // An emitter has no use for its normal.
+        let patterns = steps.iter().filter(|step| !matches!(step, Step::Texture(_))).cloned().collect();
+        Ok(Some(Emitter { radiance, patterns, kind }))
     }
 
     fn alternate(
@@ -321,18 +445,18 @@ impl<'s> Compiler<'s> {
         named.map_or(Ok(None), |id| self.material(id, location, depth + 1))
     }
 
-    fn compile_table(&mut self, said: &'s BsdfMaterial, location: &Location) -> Result<Table> {
-        if said.thickness.abs() > NO_THICKNESS {
-            let message = format!(
-                "BSDF with thickness {}: proxy geometry is not supported yet; use thickness 0 or aBSDF",
-                said.thickness
-            );
-            return Err(Error::input(location.clone(), message));
-        }
+    fn compile_table(&mut self, said: &'s BsdfMaterial) -> Result<Table> {
+        let thickness = if said.thickness.abs() > NO_THICKNESS { said.thickness } else { 0.0 };
+        let rule = match self.options.peak {
+            rule if said.extract_peak => rule,
+            PeakRule::Split if thickness != 0.0 => PeakRule::Split,
+            _ => PeakRule::Off,
+        };
         Ok(Table {
             bsdf: self.bsdf(&said.file)?,
             is_aperture: said.extract_peak,
-            rule: if said.extract_peak { self.options.peak } else { PeakRule::Off },
+            thickness,
+            rule,
             up: said.up,
             mirrored: said.mirrored,
             front_diffuse: said.front_diffuse,
@@ -349,6 +473,15 @@ impl<'s> Compiler<'s> {
         let bsdf = Arc::new(Bsdf::load(file)?);
         self.bsdfs.insert(file, bsdf.clone());
         Ok(bsdf)
+    }
+}
+
+/// Some point of a flat surface.
+fn a_point(shape: &Shape) -> Vec3 {
+    match shape {
+        Shape::Polygon(vertices) => vertices.iter().sum::<Vec3>() / vertices.len().max(1) as f64,
+        Shape::Ring { center, .. } => *center,
+        _ => Vec3::ZERO,
     }
 }
 

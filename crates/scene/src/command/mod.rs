@@ -1,7 +1,8 @@
-//! Commands in scene files, done inside: `xform`, `genbox`, `gensky`, `gendaylit`, `cat`, and pipes of them.
+//! Commands in scene files, done inside: `xform`, `genbox` and other generators, `gensky`, `gendaylit`, `cat`, and pipes of them.
 
 mod genbox;
 mod genbox_round;
+mod generate;
 mod outside;
 mod run;
 mod shell;
@@ -21,6 +22,7 @@ use std::path::{Path, PathBuf};
 use sunpeak_core::{Error, Result};
 
 pub use transform_args::trailing_transform;
+pub use xform::Invocation;
 
 /// Commands whose output holds commands, and so on: deeper than this they make themselves.
 const MAX_DEPTH: usize = 64;
@@ -36,12 +38,43 @@ pub struct Expander<'o> {
     open: Vec<PathBuf>,
     depth: usize,
     copies: usize,
+    /// Where mistakes are gathered, if they do not end the reading.
+    mistakes: Option<Vec<Error>>,
 }
 
 impl<'o> Expander<'o> {
     /// With nothing read yet.
     pub fn new(options: &'o LoadOptions) -> Self {
-        Self { options, warnings: Vec::new(), open: Vec::new(), depth: 0, copies: 0 }
+        Self { options, warnings: Vec::new(), open: Vec::new(), depth: 0, copies: 0, mistakes: None }
+    }
+
+    /// One that goes on after mistakes, and gathers them.
+    pub fn gathering(options: &'o LoadOptions) -> Self {
+        Self { mistakes: Some(Vec::new()), ..Self::new(options) }
+    }
+
+    /// The mistakes so far, if they are gathered.
+    pub fn take_mistakes(&mut self) -> Vec<Error> {
+        self.mistakes.as_mut().map(std::mem::take).unwrap_or_default()
+    }
+
+    /// Keep a mistake, or end with it.
+    fn tolerate(&mut self, mistake: Error) -> Result<()> {
+        match &mut self.mistakes {
+            Some(mistakes) => {
+                mistakes.push(mistake);
+                Ok(())
+            }
+            None => Err(mistake),
+        }
+    }
+
+    /// The items of a scene text.
+    pub fn parse(&mut self, text: &[u8], name: &str, directory: &Path) -> Result<Vec<Item>> {
+        let Some(mistakes) = &mut self.mistakes else { return raw::parse(text, name, directory) };
+        let (items, found) = raw::parse_all(text, name, directory);
+        mistakes.extend(found);
+        Ok(items)
     }
 
     /// The primitives of a file, commands in it done in the folder `cwd`.
@@ -56,7 +89,10 @@ impl<'o> Expander<'o> {
         for item in items {
             match item {
                 Item::Primitive(primitive) => primitives.push(primitive),
-                Item::Command(command) => primitives.extend(self.command(&command, cwd)?),
+                Item::Command(command) => match self.command(&command, cwd) {
+                    Ok(made) => primitives.extend(made),
+                    Err(mistake) => self.tolerate(mistake)?,
+                },
             }
         }
         Ok(primitives)
@@ -69,14 +105,14 @@ impl<'o> Expander<'o> {
             return Err(Error::input(command.location.clone(), message));
         }
         self.depth += 1;
-        let items = Run { command, cwd, expander: self }.pipeline()?;
-        let primitives = self.expand(items, cwd);
+        let items = Run { command, cwd, expander: self }.pipeline();
+        let primitives = items.and_then(|items| self.expand(items, cwd));
         self.depth -= 1;
         primitives
     }
 
     fn read_items(&mut self, path: &Path) -> Result<Vec<Item>> {
-        let items = raw::parse(&read(path)?, &path.to_string_lossy(), &folder_of(path))?;
+        let items = self.parse(&read(path)?, &path.to_string_lossy(), &folder_of(path))?;
         if items.is_empty() {
             self.warnings.push(format!("{}: an empty file", path.display()));
         }

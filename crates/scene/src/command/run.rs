@@ -1,12 +1,26 @@
 //! One command line: its pipe, stage by stage.
 
-use super::{Expander, genbox, outside, shell, sky};
-use crate::raw::{self, CommandLine, Item};
+use super::{Expander, genbox, generate, outside, shell, sky};
+use crate::{
+    files::read,
+    raw::{self, CommandLine, Item},
+};
 use std::path::{Path, PathBuf};
 use sunpeak_core::{Error, Result};
 
 /// Programs that are done inside.
-const KNOWN: [&str; 5] = ["xform", "genbox", "gensky", "gendaylit", "cat"];
+const KNOWN: [&str; 10] = [
+    "xform",
+    "genbox",
+    "genprism",
+    "genblinds",
+    "genrev",
+    "gensurf",
+    "genworm",
+    "gensky",
+    "gendaylit",
+    "cat",
+];
 
 /// One command line being done.
 pub(super) struct Run<'r, 'o> {
@@ -66,11 +80,25 @@ impl Run<'_, '_> {
                 Ok(made.into_iter().map(Item::Primitive).collect())
             }
             "cat" => self.cat(args, input),
-            name => {
+            name @ ("gensky" | "gendaylit") => {
                 let text = sky::run(name, args).map_err(|error| self.error(error.to_string()))?;
                 self.parse_output(text.as_bytes())
             }
+            name => self.generate(name, args),
         }
+    }
+
+    fn generate(&mut self, name: &str, args: &[String]) -> Result<Vec<Item>> {
+        let made = generate::run(name, args, self.command, &mut |file| self.text_of(file));
+        let made = made.unwrap_or_else(|| Err(format!("{name}: not done inside")));
+        let primitives = made.map_err(|message| self.error(message))?;
+        Ok(primitives.into_iter().map(Item::Primitive).collect())
+    }
+
+    /// The text of a file that an argument names.
+    pub fn text_of(&self, name: &str) -> std::result::Result<String, String> {
+        let bytes = self.find(name).and_then(|path| read(&path)).map_err(|error| error.to_string())?;
+        Ok(String::from_utf8_lossy(&bytes).into_owned())
     }
 
     /// Nobody sees the output of a command, so what is in it stands where the command stands.

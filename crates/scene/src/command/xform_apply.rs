@@ -14,7 +14,7 @@ impl Invocation {
     }
 
     /// A primitive as it leaves this pass. Wrong argument counts stay as they are: whoever reads them complains.
-    fn apply(&self, mut primitive: Primitive) -> Primitive {
+    pub fn apply(&self, mut primitive: Primitive) -> Primitive {
         if !primitive.kind.is_modifier() {
             self.rename(&mut primitive);
         }

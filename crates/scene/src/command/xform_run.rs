@@ -4,10 +4,7 @@ use super::{
     run::Run,
     xform::{self, Invocation},
 };
-use crate::{
-    files::{folder_of, read},
-    raw::Item,
-};
+use crate::{files::folder_of, raw::Item};
 use std::{collections::HashMap, sync::Arc};
 use sunpeak_core::Result;
 
@@ -23,7 +20,7 @@ struct Sources {
 
 impl Run<'_, '_> {
     pub fn xform(&mut self, args: &[String], input: Option<Vec<Item>>) -> Result<Vec<Item>> {
-        let passes = xform::plan(args, &mut |name| self.argument_file(name));
+        let passes = xform::plan(args, &mut |name| self.text_of(name));
         let passes = passes.map_err(|message| self.error(format!("xform: {message}")))?;
         let mut sources =
             Sources { input: input.map(Arc::new), input_expanded: false, files: HashMap::new() };
@@ -35,11 +32,6 @@ impl Run<'_, '_> {
             }
         }
         Ok(output)
-    }
-
-    fn argument_file(&self, name: &str) -> std::result::Result<String, String> {
-        let bytes = self.find(name).and_then(|path| read(&path)).map_err(|error| error.to_string())?;
-        Ok(String::from_utf8_lossy(&bytes).into_owned())
     }
 
     /// The files of a pass, or the output of the command before.

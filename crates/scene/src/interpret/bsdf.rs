@@ -1,9 +1,10 @@
 //! `BSDF` and `aBSDF`.
 
 use super::args::{check_counts, constant, title, triple};
-use crate::{BsdfMaterial, LoadOptions, command::trailing_transform, raw::Primitive};
+use super::orientation::orientation;
+use crate::{BsdfMaterial, LoadOptions, raw::Primitive};
 use std::path::Path;
-use sunpeak_core::{Rgb, Vec3};
+use sunpeak_core::Rgb;
 
 /// The material; its XML file is found, not read.
 pub fn material(primitive: &Primitive, options: &LoadOptions, cwd: &Path) -> Result<BsdfMaterial, String> {
@@ -25,15 +26,9 @@ pub fn material(primitive: &Primitive, options: &LoadOptions, cwd: &Path) -> Res
         &[0, 3, 6, 9],
         "front, back and transmitted diffuse colour",
     )?;
-    check_function_file(primitive, &primitive.strings[needed - 1])?;
-    let transform = trailing_transform(&primitive.strings[needed..])
-        .map_err(|message| format!("{}: bad transform: {message}", title(primitive)))?;
-    let up = Vec3::new(
-        constant(primitive, file_at + 1, "up vector's x")?,
-        constant(primitive, file_at + 2, "up vector's y")?,
-        constant(primitive, file_at + 3, "up vector's z")?,
-    );
-    let up = transform.vector(up).try_normalize();
+    let up = orientation(primitive, file_at + 1, "up vector")?;
+    let transform = up.transform;
+    let up = up.vector.try_normalize();
     let up = up.ok_or_else(|| format!("{}: the up vector is zero", title(primitive)))?;
     let thickness = if extract_peak { 0.0 } else { constant(primitive, 0, "thickness")? * transform.scale() };
     let name = &primitive.strings[file_at];
@@ -50,16 +45,6 @@ pub fn material(primitive: &Primitive, options: &LoadOptions, cwd: &Path) -> Res
         back_diffuse: diffuse(3),
         diffuse_transmission: diffuse(6),
     })
-}
-
-fn check_function_file(primitive: &Primitive, word: &str) -> Result<(), String> {
-    if word == "." {
-        return Ok(());
-    }
-    Err(format!(
-        "{}: the function file is \"{word}\": expected \".\", function files are not supported yet",
-        title(primitive)
-    ))
 }
 
 /// The location is said once, where the message ends up.

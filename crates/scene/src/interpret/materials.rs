@@ -3,21 +3,30 @@
 use super::{
     Interpreter, Named, Reference, Unusable, VOID,
     args::{check_counts, check_not_negative, smallest, title, triple, unsupported},
-    bsdf, patterns,
+    bsdf,
+    orientation::orientation,
+    volumes,
 };
-use crate::{Material, ModifierId, ModifierKind, Ward, raw::Primitive};
+use crate::{Anisotropy, Material, ModifierId, ModifierKind, Ward, raw::Primitive};
 
 /// Refractive index of `glass` where none is given (reference manual, "Glass").
 const GLASS_INDEX: f64 = 1.52;
 
+/// A roughness up to this is none (Radiance, `FTINY`), which the anisotropic materials do not take.
+const SMALLEST_ROUGHNESS: f64 = 1e-6;
+
 impl Interpreter<'_> {
-    pub(super) fn kind_of(&self, primitive: &Primitive) -> Result<ModifierKind, Unusable> {
+    pub(super) fn kind_of(&mut self, primitive: &Primitive) -> Result<ModifierKind, Unusable> {
         let material = match primitive.kind.name {
-            "plastic" => Material::Plastic(ward(primitive, 5)?),
-            "metal" => Material::Metal(ward(primitive, 5)?),
-            "trans" => trans(primitive)?,
+            "plastic" | "plastic2" => Material::Plastic(ward(primitive, "")?),
+            "metal" | "metal2" => Material::Metal(ward(primitive, "")?),
+            "trans" | "trans2" => trans(primitive)?,
+            "ashik2" => ashikhmin(primitive)?,
             "glass" => glass(primitive)?,
             "dielectric" => dielectric(primitive)?,
+            "interface" => volumes::interface(primitive)?,
+            "mist" => volumes::mist(primitive)?,
+            "antimatter" => self.antimatter(primitive)?,
             "mirror" => self.mirror(primitive)?,
             "light" => {
                 check_counts(primitive, &[0], &[3], "red green blue")?;
@@ -30,8 +39,13 @@ impl Interpreter<'_> {
             }
             "spotlight" => spotlight(primitive)?,
             "BSDF" | "aBSDF" => Material::Bsdf(bsdf::material(primitive, self.options, &self.cwd)?),
-            "brightfunc" => return Ok(ModifierKind::Pattern(patterns::bright_function(primitive)?)),
-            _ => return Err(unsupported(primitive).into()),
+            _ => {
+                if let Some(material) = self.function_material(primitive)? {
+                    return Ok(ModifierKind::Material(material));
+                }
+                let modulation = self.modulation(primitive)?;
+                return modulation.ok_or_else(|| unsupported(primitive).into());
+            }
         };
         Ok(ModifierKind::Material(material))
     }
@@ -52,43 +66,99 @@ impl Interpreter<'_> {
         Ok(Material::Illum { radiance: triple(&primitive.reals, 0), alternate })
     }
 
+    /// A modifier that a mixture names.
+    pub(super) fn mixed(&self, primitive: &Primitive, name: &str) -> Result<Option<ModifierId>, Unusable> {
+        self.named(primitive, name, "the modifier to be mixed,")
+    }
+
+    /// `void` among the names is the face only: it clips nothing.
+    fn antimatter(&self, primitive: &Primitive) -> Result<Material, Unusable> {
+        if primitive.strings.is_empty() || !primitive.reals.is_empty() {
+            return Err(Unusable::Because(format!(
+                "wrong number of arguments of {}: expected the names of one or more modifiers and no real arguments",
+                title(primitive)
+            )));
+        }
+        let named = |name: &String| self.named(primitive, name, "the modifier that is to be clipped,");
+        let modifiers = primitive.strings.iter().map(named).collect::<Result<Vec<_>, _>>()?;
+        Ok(Material::Antimatter { face: modifiers[0], clipped: modifiers.into_iter().flatten().collect() })
+    }
+
     fn alternate(&self, primitive: &Primitive, name: &str) -> Result<Option<ModifierId>, Unusable> {
+        self.named(primitive, name, "the material to be seen instead,")
+    }
+
+    /// A modifier that an argument names; `what` says what for.
+    fn named(&self, primitive: &Primitive, name: &str, what: &str) -> Result<Option<ModifierId>, Unusable> {
         match self.parent(primitive, name) {
             Ok(Reference::Void) => Ok(None),
             Ok(Reference::Named(Named::Modifier(id))) => Ok(Some(id)),
             Ok(Reference::Named(problem)) => Err(Unusable::Named(problem)),
             Err(_) => Err(Unusable::Because(format!(
-                "{}: the material \"{name}\" that is to be seen instead is not defined above",
+                "{}: {what} \"{name}\", is not defined above",
                 title(primitive)
             ))),
         }
     }
 }
 
-/// The arguments that plastic, metal and trans begin with.
-fn ward(primitive: &Primitive, count: usize) -> Result<Ward, String> {
-    let form = match count {
-        5 => "red green blue specularity roughness",
-        _ => "red green blue specularity roughness transmissivity specular-transmission",
-    };
-    check_counts(primitive, &[0], &[count], form)?;
-    let ward = Ward {
-        color: triple(&primitive.reals, 0),
-        specularity: primitive.reals[3],
-        roughness: primitive.reals[4],
-    };
-    let values =
-        [("colour", smallest(ward.color)), ("specularity", ward.specularity), ("roughness", ward.roughness)];
+/// The arguments that plastic, metal and trans, and their anisotropic siblings, begin with; `more` follows in `trans`.
+fn ward(primitive: &Primitive, more: &str) -> Result<Ward, String> {
+    let is_anisotropic = primitive.kind.name.ends_with('2');
+    let strings = if is_anisotropic { primitive.strings.len() } else { 0 };
+    let (roughnesses, count) = if is_anisotropic { ("urough vrough", 6) } else { ("roughness", 5) };
+    let form = format!("red green blue specularity {roughnesses}{more}");
+    check_counts(primitive, &[strings], &[count + if more.is_empty() { 0 } else { 2 }], &form)?;
+    let roughness = primitive.reals[4];
+    let color = triple(&primitive.reals, 0);
+    let values = [("colour", smallest(color)), ("specularity", primitive.reals[3]), ("roughness", roughness)];
     check_not_negative(primitive, &values)?;
-    Ok(ward)
+    let anisotropy = if is_anisotropic { Some(anisotropy(primitive)?) } else { None };
+    Ok(Ward { color, specularity: primitive.reals[3], roughness, anisotropy })
+}
+
+fn anisotropy(primitive: &Primitive) -> Result<Anisotropy, String> {
+    for (name, value) in [("urough", primitive.reals[4]), ("vrough", primitive.reals[5])] {
+        if value <= SMALLEST_ROUGHNESS {
+            return Err(format!(
+                "{}: {name} is {value}, expected more than {SMALLEST_ROUGHNESS}; without roughness use {}",
+                title(primitive),
+                primitive.kind.name.trim_end_matches('2')
+            ));
+        }
+    }
+    let orientation = orientation(primitive, 0, "orientation")?.vector;
+    Ok(Anisotropy { orientation, roughness: primitive.reals[5] })
 }
 
 fn trans(primitive: &Primitive) -> Result<Material, String> {
-    let ward = ward(primitive, 7)?;
-    let (transmissivity, specular_transmission) = (primitive.reals[5], primitive.reals[6]);
+    let ward = ward(primitive, " transmissivity specular-transmission")?;
+    let [.., transmissivity, specular_transmission] = primitive.reals[..] else {
+        return Err(format!("{}: no real arguments", title(primitive)));
+    };
     let values = [("transmissivity", transmissivity), ("specular transmission", specular_transmission)];
     check_not_negative(primitive, &values)?;
     Ok(Material::Trans { ward, transmissivity, specular_transmission })
+}
+
+fn ashikhmin(primitive: &Primitive) -> Result<Material, String> {
+    check_counts(
+        primitive,
+        &[primitive.strings.len()],
+        &[8],
+        "dred dgrn dblu sred sgrn sblu u-power v-power",
+    )?;
+    let (diffuse, specular) = (triple(&primitive.reals, 0), triple(&primitive.reals, 3));
+    let powers = [primitive.reals[6], primitive.reals[7]];
+    let values = [
+        ("diffuse colour", smallest(diffuse)),
+        ("specular colour", smallest(specular)),
+        ("u-power", powers[0]),
+        ("v-power", powers[1]),
+    ];
+    check_not_negative(primitive, &values)?;
+    let orientation = orientation(primitive, 0, "orientation")?.vector;
+    Ok(Material::Ashikhmin { diffuse, specular, powers, orientation })
 }
 
 fn glass(primitive: &Primitive) -> Result<Material, String> {
@@ -109,7 +179,7 @@ fn dielectric(primitive: &Primitive) -> Result<Material, String> {
     Ok(Material::Dielectric { transmission, index, hartmann })
 }
 
-fn check_index(primitive: &Primitive, index: f64) -> Result<(), String> {
+pub(super) fn check_index(primitive: &Primitive, index: f64) -> Result<(), String> {
     if index > 0.0 {
         return Ok(());
     }

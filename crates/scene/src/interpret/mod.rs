@@ -2,15 +2,25 @@
 
 mod args;
 mod bsdf;
+mod compounds;
+mod functions;
 mod materials;
+mod orientation;
 mod patterns;
+mod sky;
 mod surfaces;
+mod volumes;
 
 use crate::{
     LoadOptions, Modifier, ModifierId, ModifierKind, Scene, Surface,
+    field::FunctionFiles,
     raw::{Class, Primitive},
 };
-use std::{collections::HashMap, path::PathBuf};
+use compounds::Compounds;
+use std::{
+    collections::{HashMap, HashSet},
+    path::PathBuf,
+};
 use sunpeak_core::{Error, Location, Result};
 
 /// The modifier that is none.
@@ -25,7 +35,24 @@ pub struct Interpreter<'o> {
     scene: Scene,
     names: HashMap<String, Named>,
     problems: Vec<Problem>,
+    compounds: Compounds,
+    /// Those of the problems that were told as mistakes.
+    told: HashSet<usize>,
+    functions: FunctionFiles,
+    /// What each of the scene's modifiers is made of.
+    makings: Vec<Making>,
 }
+
+/// What is in a chain of modifiers.
+#[derive(Clone, Copy)]
+struct Making {
+    has_material: bool,
+    /// Mixtures within each other.
+    mixtures: usize,
+}
+
+/// Mixtures within each other: each doubles what is to be evaluated.
+const MAX_MIXTURES: usize = 8;
 
 /// What a name stands for.
 #[derive(Clone, Copy)]
@@ -56,6 +83,10 @@ impl<'o> Interpreter<'o> {
             scene: Scene::default(),
             names: HashMap::new(),
             problems: Vec::new(),
+            compounds: Compounds::default(),
+            told: HashSet::new(),
+            functions: FunctionFiles::new(),
+            makings: Vec::new(),
         }
     }
 
@@ -63,15 +94,41 @@ impl<'o> Interpreter<'o> {
     pub fn add(&mut self, primitive: Primitive) -> Result<()> {
         match primitive.kind.class {
             Class::Surface => self.surface(primitive),
-            Class::Volume => Err(Error::input(primitive.location.clone(), args::unsupported(&primitive))),
+            Class::Volume => self.compound(&primitive),
             Class::Alias => self.alias(&primitive),
             _ => self.modifier(&primitive),
         }
     }
 
+    /// Take one primitive in, and tell the mistake that it makes; what hangs on a mistake told before is left out without a word.
+    pub fn check(&mut self, primitive: Primitive) -> Option<Error> {
+        let modifier = primitive.modifier.clone();
+        let name = primitive.kind.is_modifier().then(|| primitive.name.clone());
+        match (self.names.get(&*modifier), &name) {
+            (Some(Named::Problem(problem)), None) if !self.told.insert(*problem) => return None,
+            _ => {}
+        }
+        let mistake = self.add(primitive).err()?;
+        if !self.names.contains_key(&*modifier) && ![VOID, INHERIT].contains(&&*modifier) {
+            self.tell(modifier.to_string());
+        }
+        if let Some(name) = name {
+            self.tell(name);
+        }
+        Some(mistake)
+    }
+
+    /// From here on a name stands for a mistake that was told.
+    fn tell(&mut self, name: String) {
+        self.told.insert(self.problems.len());
+        self.names.insert(name, Named::Problem(self.problems.len()));
+        self.problems.push(Problem { location: Location::default(), message: String::new() });
+    }
+
     /// The scene. Modifiers that cannot be used, and that nothing uses, are warnings in it.
     pub fn finish(mut self) -> Scene {
-        let unused = self.problems.iter().map(|p| format!("{}: {} (nothing uses it)", p.location, p.message));
+        let untold = self.problems.iter().enumerate().filter(|(index, _)| !self.told.contains(index));
+        let unused = untold.map(|(_, p)| format!("{}: {} (nothing uses it)", p.location, p.message));
         self.scene.warnings.extend(unused);
         self.scene
     }
@@ -87,16 +144,26 @@ impl<'o> Interpreter<'o> {
 
     fn make(&mut self, primitive: &Primitive, parent: Option<ModifierId>) -> Named {
         match self.kind_of(primitive) {
+            Ok(kind) if self.making(parent, &kind).mixtures > MAX_MIXTURES => {
+                let message = format!(
+                    "{}: more than {MAX_MIXTURES} mixtures within each other",
+                    args::title(primitive)
+                );
+                self.problem(primitive, message)
+            }
             Ok(kind) => self.push(primitive, parent, kind),
             Err(Unusable::Named(named)) => named,
-            Err(Unusable::Because(message)) => {
-                self.problems.push(Problem { location: primitive.location.clone(), message });
-                Named::Problem(self.problems.len() - 1)
-            }
+            Err(Unusable::Because(message)) => self.problem(primitive, message),
         }
     }
 
+    fn problem(&mut self, primitive: &Primitive, message: String) -> Named {
+        self.problems.push(Problem { location: primitive.location.clone(), message });
+        Named::Problem(self.problems.len() - 1)
+    }
+
     fn push(&mut self, primitive: &Primitive, parent: Option<ModifierId>, kind: ModifierKind) -> Named {
+        self.makings.push(self.making(parent, &kind));
         let (name, location) = (primitive.name.clone(), primitive.location.clone());
         self.scene.modifiers.push(Modifier { name, parent, kind, location });
         Named::Modifier(ModifierId(self.scene.modifiers.len() - 1))
@@ -143,10 +210,11 @@ impl<'o> Interpreter<'o> {
     }
 
     fn surface(&mut self, primitive: Primitive) -> Result<()> {
-        let modifier = match self.parent(&primitive, &primitive.modifier)? {
-            Reference::Void => None,
-            Reference::Named(Named::Modifier(id)) => Some(id),
-            Reference::Named(Named::Problem(problem)) => return Err(self.raise(problem, &primitive)),
+        let modifier = match (self.compounds.modifier, self.parent(&primitive, &primitive.modifier)?) {
+            (Some(id), _) => Some(id),
+            (None, Reference::Void) => None,
+            (None, Reference::Named(Named::Modifier(id))) => Some(id),
+            (None, Reference::Named(Named::Problem(problem))) => return Err(self.raise(problem, &primitive)),
         };
         if let Some(id) = modifier {
             self.check_chain(id, &primitive)?;
@@ -182,17 +250,45 @@ impl<'o> Interpreter<'o> {
 
     /// A surface needs one material among its modifiers.
     fn check_chain(&self, id: ModifierId, surface: &Primitive) -> Result<()> {
-        let chain = std::iter::successors(Some(id), |id| self.scene.modifiers[id.0].parent);
-        let chain = chain.map(|id| &self.scene.modifiers[id.0]);
-        let mut materials = chain.filter(|m| matches!(m.kind, ModifierKind::Material(_))).map(|m| &m.name);
-        let message = match (materials.next(), materials.next()) {
-            (Some(_), None) => return Ok(()),
-            (None, _) => format!("\"{}\" has no material among its modifiers", surface.modifier),
-            (Some(a), Some(b)) => {
+        let message = match self.materials_of(id).as_slice() {
+            [_] => return Ok(()),
+            [] => format!("\"{}\" has no material among its modifiers", surface.modifier),
+            [a, b, ..] => {
                 format!("\"{a}\" and \"{b}\" are both materials: a surface can have only one")
             }
         };
         Err(Error::input(surface.location.clone(), format!("{}: {message}", args::title(surface))))
+    }
+
+    /// The names of materials in a chain of modifiers; a mixture of materials counts as one.
+    fn materials_of(&self, id: ModifierId) -> Vec<&str> {
+        let chain = std::iter::successors(Some(id), |id| self.scene.modifiers[id.0].parent);
+        let is_material = |id: &ModifierId| match &self.scene.modifiers[id.0].kind {
+            ModifierKind::Material(_) => true,
+            ModifierKind::Pattern(_) | ModifierKind::Texture(_) => false,
+            ModifierKind::Mixture { fore, back, .. } => {
+                [fore, back].into_iter().flatten().any(|id| self.makings[id.0].has_material)
+            }
+        };
+        chain.filter(is_material).map(|id| self.scene.modifiers[id.0].name.as_str()).collect()
+    }
+
+    /// What a new modifier is made of.
+    fn making(&self, parent: Option<ModifierId>, kind: &ModifierKind) -> Making {
+        let mut making = Making { has_material: matches!(kind, ModifierKind::Material(_)), mixtures: 0 };
+        let parts = match kind {
+            ModifierKind::Mixture { fore, back, .. } => [*fore, *back],
+            _ => [None; 2],
+        };
+        for part in parts.into_iter().flatten().map(|id| self.makings[id.0]) {
+            making.has_material |= part.has_material;
+            making.mixtures = making.mixtures.max(part.mixtures + 1);
+        }
+        if let Some(parent) = parent.map(|id| self.makings[id.0]) {
+            making.has_material |= parent.has_material;
+            making.mixtures = making.mixtures.max(parent.mixtures);
+        }
+        making
     }
 
     /// The last definition above.

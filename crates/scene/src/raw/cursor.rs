@@ -80,6 +80,23 @@ impl<'t> Cursor<'t> {
         while self.advance().is_some_and(|byte| byte != b'\n') {}
     }
 
+    /// Skip to the beginning of the next line that `is_wanted`, or to the end; the line here is one of them if it lies after `begin`.
+    pub fn skip_to_line(&mut self, begin: Mark, is_wanted: impl Fn(&[u8]) -> bool) {
+        if self.line > begin.line {
+            self.offset = self.line_start;
+        } else {
+            self.skip_line();
+        }
+        while self.peek().is_some() {
+            let rest = &self.text[self.offset..];
+            let end = rest.iter().position(|&byte| byte == b'\n').unwrap_or(rest.len());
+            if is_wanted(&rest[..end]) {
+                return;
+            }
+            self.skip_line();
+        }
+    }
+
     /// The next word; `None` at the end. Quotes, single or double, keep white space in a word.
     pub fn word(&mut self) -> Result<Option<Word<'t>>> {
         self.skip_space();

@@ -3,13 +3,14 @@
 mod cursor;
 mod number;
 mod parse;
+mod print;
 mod types;
 
 use std::{path::Path, sync::Arc};
 use sunpeak_core::Location;
 
 pub use number::{parse_integer, parse_real};
-pub use parse::parse;
+pub use parse::{parse, parse_all};
 pub use types::{Class, PrimitiveType};
 
 /// One primitive, with its arguments as they stand in the file.

@@ -7,24 +7,45 @@ use super::{
     parse_integer, parse_real,
 };
 use std::{path::Path, sync::Arc};
-use sunpeak_core::Result;
+use sunpeak_core::{Error, Result};
 
 /// Counts are believed only so far before the arguments are seen.
 const MAX_PREALLOCATED: usize = 1024;
 
 /// The items of a scene text, in order; `name` is what error messages call it.
 pub fn parse(text: &[u8], name: &str, directory: &Path) -> Result<Vec<Item>> {
-    let mut parser = Parser {
-        cursor: Cursor::new(text, name.into()),
-        directory: directory.into(),
-        modifier: "void".into(),
-        last: None,
-    };
+    let mut parser = Parser::new(text, name, directory);
     let mut items = Vec::new();
     while let Some(item) = parser.item()? {
         items.push(item);
     }
     Ok(items)
+}
+
+/// The items of a scene text and all that is wrong in it: after a mistake reading goes on where a primitive seems to begin.
+pub fn parse_all(text: &[u8], name: &str, directory: &Path) -> (Vec<Item>, Vec<Error>) {
+    let mut parser = Parser::new(text, name, directory);
+    let (mut items, mut errors) = (Vec::new(), Vec::new());
+    loop {
+        let begin = parser.cursor.mark();
+        match parser.item() {
+            Ok(Some(item)) => items.push(item),
+            Ok(None) => return (items, errors),
+            Err(error) => {
+                errors.push(error);
+                parser.cursor.skip_to_line(begin, begins_primitive);
+            }
+        }
+    }
+}
+
+/// Does a line look like `modifier type …`, or like a command?
+fn begins_primitive(line: &[u8]) -> bool {
+    let mut words = line.split(|byte| byte.is_ascii_whitespace()).filter(|word| !word.is_empty());
+    let Some(first) = words.next() else { return false };
+    let second = words.next().and_then(|word| std::str::from_utf8(word).ok());
+    let is_type = |word: &str| first == b"void" || PrimitiveType::find(word).is_some();
+    first[0] == b'!' || second.is_some_and(is_type)
 }
 
 struct Parser<'t> {
@@ -37,6 +58,15 @@ struct Parser<'t> {
 }
 
 impl<'t> Parser<'t> {
+    fn new(text: &'t [u8], name: &str, directory: &Path) -> Self {
+        Self {
+            cursor: Cursor::new(text, name.into()),
+            directory: directory.into(),
+            modifier: "void".into(),
+            last: None,
+        }
+    }
+
     fn item(&mut self) -> Result<Option<Item>> {
         loop {
             self.cursor.skip_space();
@@ -145,7 +175,7 @@ impl<'t> Parser<'t> {
         }
     }
 
-    fn unknown_type(&self, modifier: &Word, kind: &Word) -> sunpeak_core::Error {
+    fn unknown_type(&self, modifier: &Word, kind: &Word) -> Error {
         if let (Some(last), Some(_)) = (&self.last, parse_real(&modifier.text)) {
             let message = format!(
                 "expected a modifier and a primitive's type, found \"{} {}\": does {last} above count its arguments \
@@ -199,6 +229,17 @@ mod tests {
         let items = parse(b"!xform \\\n a.rad\nvoid alias x y", "t.rad", Path::new(".")).expect("a scene");
         assert!(matches!(&items[0], Item::Command(c) if c.text == "xform \\\n a.rad"));
         assert!(matches!(&items[1], Item::Primitive(p) if p.location.line == 3));
+    }
+
+    #[test]
+    fn reading_goes_on_after_a_mistake() {
+        let text = "void plastik a\n0 0 5 1 1 1 0 0\nvoid plastic b 0 0 6 1 1 1 0 0\nb sphere s 0 0 4 0 0 0 1\n\
+                    b sphere t\n0 0 four\n# end\n!genbox b c 1 1 1\nvoid light 'l";
+        let (items, errors) = parse_all(text.as_bytes(), "t.rad", Path::new("."));
+        let lines: Vec<_> =
+            errors.iter().map(|e| e.to_string().split(':').nth(1).map(String::from)).collect();
+        assert_eq!(lines, ["1", "4", "6", "9"].map(|line| Some(line.to_string())), "{errors:?}");
+        assert!(matches!(&items[..], [Item::Primitive(s), Item::Command(_)] if s.name == "s"), "{items:?}");
     }
 
     #[test]

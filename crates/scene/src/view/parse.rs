@@ -12,7 +12,11 @@ impl View {
     /// A view from options, such as `-vta -vp 1 2 3 -vh 180 -vv 180`, or `-vf file` among them; unknown options are
     /// errors. What is not given is as in Radiance's standard view.
     pub fn parse(options: &str) -> Result<Self> {
-        let words: Vec<&str> = options.split_whitespace().collect();
+        Self::parse_words(&options.split_whitespace().collect::<Vec<_>>())
+    }
+
+    /// The same from words, which may hold blanks, as file names do.
+    pub fn parse_words(words: &[&str]) -> Result<Self> {
         let mut view = Self::default();
         let mut at = 0;
         while at < words.len() {

@@ -9,6 +9,7 @@ fn table(rule: PeakRule, diffuse: f64) -> Table {
     Table {
         bsdf: Arc::new(fabric.tabulate(Basis::KlemsFull).expect("tabulates")),
         is_aperture: true,
+        thickness: 0.0,
         rule,
         up: Vec3::Y,
         mirrored: false,
@@ -19,7 +20,7 @@ fn table(rule: PeakRule, diffuse: f64) -> Table {
 }
 
 fn arrival(direction: Vec3) -> Arrival {
-    Arrival { point: Vec3::ZERO, normal: Vec3::Z, direction: direction.normalize() }
+    Arrival::new(Vec3::ZERO, Vec3::Z, direction.normalize())
 }
 
 const DIRECTIONS: [Vec3; 3] = [Vec3::NEG_Z, Vec3::new(0.6, 0.2, 0.5), Vec3::new(-0.9, 0.3, -0.4)];

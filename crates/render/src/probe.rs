@@ -1,0 +1,79 @@
+//! What rays meet first: distances, places, normals, for depth pictures and for sensors on surfaces.
+
+use crate::shapes::Ray;
+use crate::{World, material::EmitterKind, material::Material};
+use rayon::prelude::*;
+use sunpeak_core::{Error, Result, Vec3};
+
+/// The surface that a ray meets first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FirstSurface {
+    /// From the ray's origin [m].
+    pub distance: f64,
+    /// Where it is met.
+    pub point: Vec3,
+    /// Unit normal of the surface's front.
+    pub normal: Vec3,
+    /// Index in [`Scene::surfaces`](sunpeak_scene::Scene::surfaces).
+    pub surface: usize,
+}
+
+/// The first surface along each ray, given by origin and direction (of any length); `None` where there is none. An `illum` without
+/// anything to see instead is passed, as by a view ray.
+///
+/// # Errors
+/// A ray that is not finite or has no direction.
+pub fn first_surfaces(world: &World, rays: &[(Vec3, Vec3)]) -> Result<Vec<Option<FirstSurface>>> {
+    let first = |(i, &(origin, towards)): (usize, &(Vec3, Vec3))| match towards.try_normalize() {
+        Some(direction) if origin.is_finite() => Ok(first_surface(world, Ray::new(origin, direction))),
+        _ => Err(Error::value(format!(
+            "ray {i} at {origin} has direction {towards}: not a place and a direction"
+        ))),
+    };
+    rays.par_iter().enumerate().map(first).collect()
+}
+
+fn first_surface(world: &World, ray: Ray) -> Option<FirstSurface> {
+    let mut segment = ray;
+    loop {
+        let hit = world.accel.closest(&segment, f64::INFINITY)?;
+        let object = world.object(&hit);
+        let arrival = world.arrival(&hit, &segment);
+        let is_invisible = matches!(world.material(object.material), Material::Emitter(emitter)
+            if matches!(emitter.kind, EmitterKind::Illum { alternate: None }));
+        if is_invisible {
+            segment = Ray::past(arrival.point, ray.direction);
+            continue;
+        }
+        return Some(FirstSurface {
+            distance: arrival.point.distance(ray.origin),
+            point: arrival.point,
+            normal: arrival.normal,
+            surface: world.surfaces[hit.object as usize] as usize,
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sunpeak_scene::{LoadOptions, Scene};
+
+    #[test]
+    fn a_ray_meets_the_nearest_surface_with_its_front_normal() {
+        let text = "void plastic white 0 0 5 .5 .5 .5 0 0\nvoid illum seen 0 0 3 1 1 1\n\
+                    white polygon floor 0 0 12 0 0 0 4 0 0 4 4 0 0 4 0\nwhite sphere ball 0 0 4 2 2 5 1\n\
+                    seen polygon veil 0 0 12 0 0 2 4 0 2 4 4 2 0 4 2";
+        let scene = Scene::parse(text, "t.rad", &LoadOptions::default()).expect("a scene");
+        let world = World::compile(&scene, &Default::default()).expect("a world");
+        let at = Vec3::new(2.0, 2.0, 3.0);
+        let rays = [(at, -2.0 * Vec3::Z), (at, Vec3::Z), (at, Vec3::X)];
+        let found = first_surfaces(&world, &rays).expect("rays");
+        let floor = found[0].expect("the floor");
+        assert_eq!((floor.distance, floor.normal, floor.surface), (3.0, Vec3::Z, 0));
+        let ball = found[1].expect("the ball");
+        assert!((ball.distance - 1.0).abs() < 1e-12 && ball.normal.distance(-Vec3::Z) < 1e-12);
+        assert_eq!((ball.surface, found[2]), (1, None));
+        assert!(first_surfaces(&world, &[(at, Vec3::ZERO)]).is_err());
+    }
+}

@@ -1,0 +1,123 @@
+"""`sunpeak bsdf fabric`: a fabric from its datasheet or from a formula."""
+
+from dataclasses import fields
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from sunpeak.cli.options import Quiet
+from sunpeak.cli.output import note
+from sunpeak.cli.values import parse_share
+from sunpeak.fabrics import Fabric, RollerBlind
+
+DATASHEET = "From a datasheet (EN 14500)"
+FORMULA = "From a formula"
+
+
+def _share(name: str, text: str, panel: str, default: str | bool = False) -> Any:
+    """Declare an option that takes `3%` or `0.03`."""
+    return typer.Option(
+        name, parser=parse_share, metavar="SHARE", help=text, rich_help_panel=panel, show_default=default
+    )
+
+
+def _default(name: str) -> str:
+    return next(f"{field.default:g}" for field in fields(Fabric) if field.name == name)
+
+
+def fabric(
+    output: Annotated[Path, typer.Option("--output", "-o", help="LBNL XML file to write.")],
+    basis: Annotated[
+        str, typer.Option(help="klems, klems-half, klems-quarter, or t3-1024 … t3-16384, t4-256 …, by number of cells.")
+    ] = "klems",
+    cut_off: Annotated[
+        float | None,
+        typer.Option(
+            help="Degrees from which nothing goes straight through.",
+            show_default=f"by the openness from a datasheet, {Fabric.cut_off_deg:g} from a formula",
+        ),
+    ] = None,
+    tau_nn: Annotated[Any, _share("--tau-nn", "Normal-normal transmittance: straight through.", DATASHEET)] = None,
+    tau_nh: Annotated[Any, _share("--tau-nh", "Normal-hemispherical transmittance: in all.", DATASHEET)] = None,
+    rho_front: Annotated[Any, _share("--rho-front", "Reflectance of the side towards the sun.", DATASHEET)] = None,
+    rho_back: Annotated[
+        Any, _share("--rho-back", "Reflectance of the side towards the room.", DATASHEET, "as the front")
+    ] = None,
+    openness: Annotated[
+        Any, _share("--openness", "Straight through at normal incidence.", FORMULA, _default("openness"))
+    ] = None,
+    exponent: Annotated[
+        float | None,
+        typer.Option(
+            help="Steepness of the fall to the cut-off.", rich_help_panel=FORMULA, show_default=_default("exponent")
+        ),
+    ] = None,
+    scattered: Annotated[Any, _share("--scattered", "Scattered.", FORMULA, _default("scattered"))] = None,
+    lobe_share: Annotated[
+        Any, _share("--lobe-share", "Share of it around the straight direction.", FORMULA, _default("lobe_share"))
+    ] = None,
+    lobe_sigma: Annotated[
+        float | None,
+        typer.Option(
+            help="Width of that lobe, projected.", rich_help_panel=FORMULA, show_default=_default("lobe_sigma")
+        ),
+    ] = None,
+    reflectance: Annotated[
+        Any, _share("--reflectance", "Diffuse, both sides.", FORMULA, _default("reflectance"))
+    ] = None,
+    quiet: Quiet = False,
+) -> None:
+    """Make a fabric from a datasheet or from a formula.
+
+    Datasheet: a roller blind by the model of Kotey, Wright and Collins (2009). Formula: T = openness cos(90 deg theta /
+    cut-off)^exponent, a lobe around the straight direction, and diffuse light.
+
+    [dim]$[/dim] [cyan]sunpeak bsdf fabric -o blind.xml --tau-nn 3% --tau-nh 5% --rho-front 40% --rho-back 35%[/cyan]
+
+    [dim]$[/dim] [cyan]sunpeak bsdf fabric -o shade.xml --basis t3-4096 --openness 3%[/cyan]
+    """
+    formula = {
+        "exponent": exponent,
+        "scattered": scattered,
+        "lobe_share": lobe_share,
+        "lobe_sigma": lobe_sigma,
+        "reflectance": reflectance,
+    }
+    given = {name: value for name, value in formula.items() if value is not None}
+    if tau_nn is None and tau_nh is None and rho_front is None and rho_back is None:
+        known = {"openness": openness, "cut_off_deg": cut_off}
+        given |= {name: value for name, value in known.items() if value is not None}
+        Fabric(**given).write(output, basis)
+        return
+    if given:
+        names = ", ".join("--" + name.replace("_", "-") for name in given)
+        raise typer.BadParameter(
+            f"{names}: for fabrics from a formula; expected none of it beside a datasheet's numbers"
+        )
+    _of_datasheet(tau_nn, tau_nh, rho_front, rho_back, openness, cut_off, quiet).write(output, basis)
+
+
+def _of_datasheet(
+    tau_nn: float | None,
+    tau_nh: float | None,
+    rho_front: float | None,
+    rho_back: float | None,
+    openness: float | None,
+    cut_off: float | None,
+    quiet: bool,
+) -> RollerBlind:
+    if tau_nh is None or rho_front is None:
+        raise typer.BadParameter("a datasheet's fabric needs --tau-nn, --tau-nh and --rho-front")
+    if tau_nn is not None and openness is not None:
+        raise typer.BadParameter("--tau-nn and --openness: expected one of them")
+    if tau_nn is None:
+        if openness is None:
+            raise typer.BadParameter("a datasheet's fabric needs --tau-nn; or --openness, if nothing else is known")
+        note(
+            f"warning: the nominal openness, {100 * openness:g} %, is taken for --tau-nn; the normal-normal "
+            "transmittance that is measured may differ from it by half",
+            quiet,
+        )
+        tau_nn = openness
+    return RollerBlind(tau_nn, tau_nh, rho_front, rho_front if rho_back is None else rho_back, cut_off)

@@ -1,0 +1,229 @@
+"""`rtrace`: radiance along rays, irradiance at sensors, and what rays meet."""
+
+import math
+import sys
+from collections.abc import Callable
+from typing import TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from sunpeak._core import InputError
+from sunpeak.compat import header, numbers, octree, quality
+from sunpeak.compat.options import CommandLine, Table, expand_arguments, take
+from sunpeak.compat.world import CompiledScene, First
+
+Floats = npt.NDArray[np.float64]
+Number = TypeVar("Number", np.float64, np.int64)
+
+DIRECTIONS = 1024
+"""`-ad` of Radiance's rtrace."""
+FAR = 1e10
+"""Distance where nothing is met, as Radiance prints it."""
+IDLE = frozenset({"-te", "-ti", "-tE", "-tI"})
+TABLE = Table(
+    values={**quality.RENDER_VALUES, "-x": 1, "-y": 1, **dict.fromkeys(IDLE, 1)},
+    switches=quality.SWITCHES | {"-h", "-I", "-ld", "-cu"},
+    idle=quality.IDLE_VALUES | quality.IDLE_SWITCHES | IDLE | {"-cu"},
+)
+FIELDS = "odvVlLcpnNsmMwW~"
+"""Letters of `-o`."""
+COMPONENTS = {"o": 3, "d": 3, "v": 3, "V": 3, "l": 1, "L": 1, "c": 2, "p": 3, "n": 3, "N": 3, "w": 1, "W": 3}
+
+
+class Options:
+    """The command line."""
+
+    def __init__(self, arguments: list[str]) -> None:
+        """Take a command line apart."""
+        self.line = CommandLine(switches={"-h": True, "-w": True})
+        self.fields = "v"
+        self.forms = "aa"
+        self.only_defaults = False
+        words = expand_arguments(arguments)
+        at = 0
+        while at < len(words) and words[at].startswith("-"):
+            at += 1 + self._take(words, at)
+        self.line.rest = words[at:]
+        self.size = (self.line.whole("-x", 0), self.line.whole("-y", 0))
+
+    def _take(self, words: list[str], at: int) -> int:
+        word = words[at]
+        if word == "-defaults":
+            self.only_defaults = True
+        elif word.startswith("-f") and 2 <= len(word) <= 4:
+            self.forms = forms_of(word)
+        elif word.startswith("-o") and len(word) > 2:
+            self.fields = fields_of(word)
+        elif word in ("-pRGB", "-pXYZ"):
+            if word != "-pRGB":
+                raise InputError(f"{word}: Sunpeak gives Radiance's RGB alone")
+        else:
+            return take(words, at, TABLE, self.line)
+        return 0
+
+    @property
+    def warn(self) -> bool:
+        """Say whether warnings are wanted."""
+        return self.line.is_on("-w")
+
+
+def forms_of(option: str) -> str:
+    """Formats of input and output: `-fa` is both, `-faf` text to floats."""
+    forms = option[2:] or "a"
+    forms = forms if len(forms) == 2 else (forms * 2 if forms in ("a", "f", "d") else f"a{forms}")
+    if len(forms) != 2 or forms[0] not in "afd" or forms[1] not in "afdc":
+        raise InputError(f"command line error at '{option}': expected -f with input a, f or d and output a, f, d or c")
+    return forms
+
+
+def fields_of(option: str) -> str:
+    """Letters after `-o`."""
+    for letter in option[2:]:
+        if letter not in FIELDS:
+            raise InputError(f"{option}: Sunpeak's rtrace does not give '{letter}'; expected letters of {FIELDS}")
+    return option[2:]
+
+
+def run(arguments: list[str]) -> int:
+    """Trace what stands on standard input."""
+    options = Options(arguments)
+    line = options.line
+    if options.only_defaults:
+        sys.stdout.write(f"-f{options.forms}\t\t\t\t# format input/output\n-o{options.fields}\t\t\t\t# output value\n")
+        sys.stdout.write(quality.defaults_text(line, DIRECTIONS))
+        return 0
+    if len(line.rest) != 1:
+        raise InputError("missing octree argument" if not line.rest else f"expected one octree, found {line.rest}")
+    if line.has("-e"):
+        sys.stderr = open(line.values["-e"][0], "a", encoding="utf-8")  # noqa: SIM115, PTH123 (until the program ends)
+    line.note_idle("rtrace", quiet=not options.warn)
+    scene_file = octree.read(line.rest[0])
+    is_picture = options.size[0] > 0 and options.size[1] > 0 and not line.is_on("-I")
+    work = quality.rays_of_picture(line, DIRECTIONS) if is_picture else quality.sensors(line, DIRECTIONS)
+    scene = CompiledScene(scene_file, work.peak)
+    if options.warn:
+        sys.stderr.writelines(f"rtrace: warning - {warning}\n" for warning in scene.scene.warnings)
+    rays = numbers.read_stdin(options.forms[0], 6)
+    output = table(Answers(scene, rays, options, work), options.fields, options.forms[1])
+    header.write_stdout(head(options, arguments, scene_file) + output)
+    return 0
+
+
+def head(options: Options, arguments: list[str], scene_file: octree.Octree) -> bytes:
+    """Header and resolution line, as far as they are wanted."""
+    data = b""
+    # The octree is a word of its own in the command, and stands in the history already.
+    if options.line.is_on("-h"):
+        lines = header.history(scene_file.history, "rtrace", arguments[:-1])
+        lines.append(f"NCOMP={sum(COMPONENTS.get(letter, 1) for letter in options.fields)}")
+        if options.forms[1] in "fd":
+            lines.append(f"BigEndian={int(sys.byteorder == 'big')}")
+        data = header.text([*lines, f"FORMAT={numbers.FORMAT_NAMES[options.forms[1]]}"])
+    width, height = options.size
+    return data + (f"-Y {height:8d} +X {width:8d}\n".encode() if width > 0 and height > 0 else b"")
+
+
+class Answers:
+    """Everything that can be asked about rays; each is worked out once, when it is asked for."""
+
+    def __init__(self, scene: CompiledScene, rays: Floats, options: Options, work: quality.Quality) -> None:
+        """Take the rays (n, 6) in."""
+        self.scene, self.options, self.work = scene, options, work
+        self.rays = rays
+        self.origins, self.directions = rays[:, :3], rays[:, 3:]
+        self.lengths = np.linalg.norm(self.directions, axis=1)
+        self.is_ray = np.isfinite(rays).all(axis=1) & (self.lengths > 0)
+        self._first: First | None = None
+
+    @property
+    def first(self) -> First:
+        """What rays meet, at any distance."""
+        if self._first is None:
+            good = self.is_ray
+            found = self.scene.first(self.origins[good], self.directions[good])
+            self._first = First(
+                spread(found.distance, good, math.inf),
+                spread(found.point, good, 0.0),
+                spread(found.normal, good, 0.0),
+                spread(found.surface, good, -1),
+            )
+        return self._first
+
+    def values(self) -> Floats:
+        """Radiance or irradiance (n, 3); 0 for what is no ray, as in Radiance."""
+        good = self.is_ray
+        line = self.options.line
+        if line.is_on("-ld"):
+            # The length of a direction is as far as the ray sees.
+            good = good & (self.first.distance <= self.lengths)
+        ask: Callable[[Floats, Floats, quality.Quality], Floats] = self.scene.radiance
+        if line.is_on("-I"):
+            ask = self.scene.irradiance
+        elif line.is_on("-i"):
+            ask = self.scene.irradiance_of_surfaces
+        return spread(ask(self.origins[good], self.directions[good], self.work), good, 0.0)
+
+    def column(self, letter: str) -> Floats:
+        """Give the numbers of a letter (n, k)."""
+        return COLUMNS[letter](self)
+
+    @property
+    def is_met(self) -> npt.NDArray[np.bool_]:
+        """Whether each ray meets anything."""
+        return self.first.surface >= 0
+
+    def words(self, letter: str) -> list[str]:
+        """Give the names of a letter."""
+        if letter == "~":
+            return ["~"] * len(self.rays)
+        labels = self.scene.scene.surface_labels()
+        which = "smM".index(letter)
+        return [str(labels[surface][which]) if surface >= 0 else "*" for surface in self.first.surface.tolist()]
+
+
+def unit_directions(answers: Answers) -> Floats:
+    """Directions of length 1; nothing for what is no ray."""
+    lengths = np.where(answers.is_ray, answers.lengths, 1.0)
+    return np.where(answers.is_ray[:, None], answers.directions / lengths[:, None], 0.0)
+
+
+COLUMNS: dict[str, Callable[[Answers], Floats]] = {
+    "o": lambda answers: answers.origins,
+    "d": unit_directions,
+    "v": Answers.values,
+    "V": Answers.values,
+    "l": lambda answers: np.minimum(answers.first.distance, FAR)[:, None],
+    "L": lambda answers: np.minimum(answers.first.distance, FAR)[:, None],
+    "p": lambda answers: np.where(answers.is_met[:, None], answers.first.point, answers.origins),
+    "n": lambda answers: np.where(answers.is_met[:, None], answers.first.normal, 0.0),
+    "N": lambda answers: np.where(answers.is_met[:, None], answers.first.normal, 0.0),
+    "c": lambda answers: np.zeros((len(answers.rays), 2)),
+    "w": lambda answers: np.ones((len(answers.rays), 1)),
+    "W": lambda answers: np.ones((len(answers.rays), 3)),
+}
+"""Numbers of the letters of `-o` (n, k)."""
+
+
+def spread(values: npt.NDArray[Number], where: npt.NDArray[np.bool_], otherwise: float) -> npt.NDArray[Number]:
+    """Put values to where they belong, and another one elsewhere."""
+    whole = np.full((len(where), *values.shape[1:]), otherwise, dtype=values.dtype)
+    whole[where] = values
+    return whole
+
+
+def table(answers: Answers, fields: str, form: str) -> bytes:
+    """All columns, row by row."""
+    if form == "c" and fields not in ("v", "V"):
+        raise InputError(f"-fc: expected -ov, found -o{fields}: only colours are written so")
+    if not set(fields) & set("smM~"):
+        return numbers.encode(np.hstack([answers.column(letter) for letter in fields]), form)
+    if form != "a":
+        raise InputError(f"-o{fields}: names are text; expected -fa")
+    columns: list[list[str]] = []
+    for letter in fields:
+        if letter in "smM~":
+            columns.append([word + "\t" for word in answers.words(letter)])
+        else:
+            columns.append(numbers.text(answers.column(letter), "%.6e\t").split("\n")[:-1])
+    return "".join("".join(row) + "\n" for row in zip(*columns, strict=True)).encode()
