@@ -209,7 +209,7 @@ fn wrong_texts_are_said_to_be_wrong_and_where() {
         ),
         (
             "void aBSDF b 5 no.xml Nx 0 1 . 0 0 b sphere s 0 0 4 0 0 0 1".into(),
-            "the up vector's x is the expression \"Nx\": expected a number",
+            "the up vector's x is \"Nx\": the variable \"Nx\" is not defined",
         ),
         (
             "void brightfunc f 2 skybr skybright.cal 0 7 1 1 1 1 0 0 1 f sphere s 0 0 4 0 0 0 1".into(),
