@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from test_modifiers import SUN, assert_same, both
 
 from conftest import Radiance
-from test_modifiers import SUN, assert_same, both
 
 MATERIALS = {
     "plasfunc": "plasfunc x 4 lobe2 mine.cal -rz 30 0 5 .6 .5 .4 .3 2",
