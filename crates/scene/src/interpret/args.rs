@@ -1,8 +1,7 @@
 //! Argument counts and values.
 
-use crate::raw::{Primitive, parse_real};
-use sunpeak_cal::Definitions;
-use sunpeak_core::{Error, Rgb, Vec3};
+use crate::raw::Primitive;
+use sunpeak_core::{Rgb, Vec3};
 
 /// Type and name, for messages.
 pub fn title(primitive: &Primitive) -> String {
@@ -57,22 +56,4 @@ pub fn check_not_negative(primitive: &Primitive, values: &[(&str, f64)]) -> Resu
 /// A colour's channels with a name, for [`check_not_negative`].
 pub fn smallest(color: Rgb) -> f64 {
     color.min_element()
-}
-
-/// A string argument that is an expression, and that we want as a number: it may ask for the real arguments, not for the ray.
-pub fn constant(primitive: &Primitive, index: usize, what: &str) -> Result<f64, String> {
-    let word = &primitive.strings[index];
-    if let Some(value) = parse_real(word) {
-        return Ok(value);
-    }
-    let wrong = |message: String| format!("{}: the {what} is \"{word}\": {message}", title(primitive));
-    let mut definitions = Definitions::new();
-    let program = definitions
-        .expression(word, &primitive.location, "")
-        .and_then(|expression| definitions.compile(&[expression], &primitive.reals))
-        .map_err(|error| match error {
-            Error::Input { message, .. } => wrong(message),
-            other => wrong(other.to_string()),
-        })?;
-    program.constant(0).ok_or_else(|| wrong("expected an expression that is the same for all rays".into()))
 }
