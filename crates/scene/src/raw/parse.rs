@@ -27,6 +27,7 @@ pub fn parse_all(text: &[u8], name: &str, directory: &Path) -> (Vec<Item>, Vec<E
     let mut parser = Parser::new(text, name, directory);
     let (mut items, mut errors) = (Vec::new(), Vec::new());
     loop {
+        parser.skip_blank();
         let begin = parser.cursor.mark();
         match parser.item() {
             Ok(Some(item)) => items.push(item),
@@ -68,14 +69,20 @@ impl<'t> Parser<'t> {
     }
 
     fn item(&mut self) -> Result<Option<Item>> {
-        loop {
+        self.skip_blank();
+        match self.cursor.peek() {
+            None => Ok(None),
+            Some(b'!') => Ok(Some(self.command())),
+            Some(_) => self.primitive().map(|p| Some(Item::Primitive(p))),
+        }
+    }
+
+    /// Skip white space and comments.
+    fn skip_blank(&mut self) {
+        self.cursor.skip_space();
+        while self.cursor.peek() == Some(b'#') {
+            self.cursor.skip_line();
             self.cursor.skip_space();
-            match self.cursor.peek() {
-                None => return Ok(None),
-                Some(b'#') => self.cursor.skip_line(),
-                Some(b'!') => return Ok(Some(self.command())),
-                Some(_) => return self.primitive().map(|p| Some(Item::Primitive(p))),
-            }
         }
     }
 

@@ -45,6 +45,13 @@ impl<'a> Options<'a> {
         }
         Ok(options)
     }
+
+    /// Was this flag among the options? It is not any more.
+    pub fn take_flag(&mut self, flag: &str) -> bool {
+        let before = self.flags.len();
+        self.flags.retain(|&given| given != flag);
+        self.flags.len() < before
+    }
 }
 
 /// Compiled functions of `s` and `t`.

@@ -56,18 +56,40 @@ impl<'c> Maker<'c> {
     }
 
     fn add(&mut self, kind: &'static str, suffix: &str, reals: Vec<f64>) -> Result<(), String> {
+        let name = format!("{}.{suffix}", self.name);
+        self.push(kind, name, Vec::new(), reals)
+    }
+
+    /// A modifier of the surfaces to come, with string arguments.
+    fn add_modifier(
+        &mut self,
+        kind: &'static str,
+        name: &str,
+        strings: &[&str],
+        reals: Vec<f64>,
+    ) -> Result<(), String> {
+        self.push(kind, name.into(), strings.iter().map(ToString::to_string).collect(), reals)
+    }
+
+    fn push(
+        &mut self,
+        kind: &'static str,
+        name: String,
+        strings: Vec<String>,
+        reals: Vec<f64>,
+    ) -> Result<(), String> {
         if self.made.len() >= MAX_SURFACES {
             return Err(format!("more than {MAX_SURFACES} surfaces: are the counts right?"));
         }
         if !reals.iter().all(|real| real.is_finite()) {
-            return Err(format!("{} \"{}.{suffix}\" has a number that is not finite", kind, self.name));
+            return Err(format!("{} \"{}\" has a number that is not finite", kind, name));
         }
         let Some(kind) = PrimitiveType::find(kind) else { return Ok(()) };
         self.made.push(Primitive {
             modifier: self.material.clone(),
             kind,
-            name: format!("{}.{suffix}", self.name),
-            strings: Vec::new(),
+            name,
+            strings,
             reals,
             location: self.command.location.clone(),
             directory: self.command.directory.clone(),
