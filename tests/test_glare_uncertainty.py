@@ -1,5 +1,6 @@
 """How far off a glare number may be: against what repetition shows, and by hand."""
 
+import dataclasses
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 import sunpeak as sp
 from conftest import CommandLine
+from sunpeak.demo import DEMO_ROOM
 
 # The lamp shines at the wall behind it, which glares with a soft edge: pixels pass the threshold or not, by noise.
 LAMP_ROOM = """\
@@ -36,6 +38,35 @@ def test_stated_intervals_agree_with_twenty_seeds(world: sp.World) -> None:
         found = np.std([getattr(report, name) for report in reports], ddof=1)
         stated = np.mean([half_width(report, name) / 1.96 for report in reports])
         assert 0.4 < found / stated < 1.5, (name, found, stated)
+
+
+def test_the_noise_of_a_smeared_sun_is_not_that_of_its_surroundings(tmp_path: Path) -> None:
+    """Without peak extraction some pixels hold the sun: dim ones beside them do not pass the threshold by its noise."""
+    room = dataclasses.replace(DEMO_ROOM, direct_normal_w_m2=500.0)
+    scene = sp.Scene.load([*room.write(tmp_path), room.hang(tmp_path, "t3-1024")])
+    smeared = sp.World.compile(scene, "off")
+    view = sp.View.parse(room.view_options())
+    reports = [sp.glare(sp.render(smeared, view, (40, 40), samples=16, seed=seed)) for seed in range(12)]
+    found = np.std([report.dgp for report in reports], ddof=1)
+    stated = np.mean([half_width(report, "dgp") / 1.96 for report in reports])
+    assert max(report.sources[0].luminance_cd_m2 for report in reports) > 50_000
+    assert 0.3 < found / stated < 1.6, (found, stated)
+
+
+@pytest.mark.parametrize(("direct_normal_w_m2", "right"), [(54.5, "imperceptible"), (58.0, "perceptible")])
+def test_the_class_rule_is_right_where_dgp_is_near_a_border(
+    direct_normal_w_m2: float, right: str, tmp_path: Path
+) -> None:
+    """Runs that stop as soon as the class is known, at 0.002 from 0.35: one in forty may be wrong."""
+    room = dataclasses.replace(DEMO_ROOM, direct_normal_w_m2=direct_normal_w_m2)
+    near = sp.World.compile(sp.Scene.load([*room.write(tmp_path), room.hang(tmp_path, "t3-1024")]))
+    view = sp.View.parse(room.view_options())
+    truth = sp.glare(sp.render(near, view, (24, 24), samples=512, seed=900))
+    assert abs(truth.dgp - 0.35) < 0.0035, "not near the border: the test would prove nothing"
+    assert truth.glare_class == right
+    verdicts = [sp.glare(sp.render(near, view, (24, 24), until="class", seed=seed)).verdict for seed in range(40)]
+    assert len([verdict for verdict in verdicts if verdict not in (right, "undecided")]) <= 1
+    assert verdicts.count(right) >= 36, verdicts
 
 
 def test_errors_travel_in_the_header(world: sp.World, tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from sunpeak._core import InputError, __version__
 
 if TYPE_CHECKING:
+    from sunpeak.blinds import Blind
     from sunpeak.bsdf_plot import plot_bsdf
     from sunpeak.bsdf_report import BsdfReport
     from sunpeak.bsdf_verdict import Verdict
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from sunpeak.skies import Place, Sky, SunPosition, sun_position
 
 __all__ = [
+    "Blind",
     "Bsdf",
     "BsdfReport",
     "Evidence",
@@ -63,6 +65,7 @@ __all__ = [
 ]
 
 _HOMES = {
+    "Blind": "blinds",
     "plot_bsdf": "bsdf_plot",
     "BsdfReport": "bsdf_report",
     "Verdict": "bsdf_verdict",

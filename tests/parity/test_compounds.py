@@ -141,6 +141,19 @@ def test_meshes(
     assert np.quantile(np.abs(runs[0] - runs[1]).max(axis=1), 0.9) < 2e-3 * runs[0].max()
 
 
+def test_local_coordinates_of_a_mesh(radiance: Radiance, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A pattern over Lu and Lv."""
+    monkeypatch.chdir(tmp_path)
+    Path("ball.obj").write_text(wavefront_ball())
+    Path("materials.rad").write_text(MATERIALS)
+    Path("ball.rtm").write_bytes(radiance.run("obj2mesh", "-a", "materials.rad", "ball.obj", folder=tmp_path))
+    scene = (
+        f"{LIGHT}void colorfunc stripes 4 .2+.7*Lu Lv .5 . 0 0\nstripes plastic painted 0 0 5 1 1 1 0 0\n"
+        "painted mesh ball 3 ball.rtm -rx 30 0 0\n"
+    )
+    assert_same_picture(scene, radiance, tmp_path, rays_at(0.0, 300, 8))
+
+
 def drop_normals(line: str) -> str:
     """Corners `v/t` of a face instead of `v/t/n`."""
     if not line.startswith("f "):

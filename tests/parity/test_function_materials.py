@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from test_modifiers import SUN, assert_same, both
 
 from conftest import Radiance
-from test_modifiers import SUN, assert_same, both
 
 MATERIALS = {
     "plasfunc": "plasfunc x 4 lobe2 mine.cal -rz 30 0 5 .6 .5 .4 .3 2",
@@ -37,7 +37,7 @@ def test_functions_scatter_sunlight(material: str, radiance: Radiance, tmp_path:
 
 def test_brtdfunc_mirrors_and_lets_through(radiance: Radiance, tmp_path: Path) -> None:
     text = (
-        "void BRTDfunc x 10 .1+.2*Rdot .3 .1 .2 .1 if(Px,.5,.1) 0 0 0 . 0 9 0 0 0 0 0 0 0 0 0\n"
+        "void BRTDfunc x 10 .3+.2*Rdot .3 .1 .2 .1 if(Px,.5,.1) 0 0 0 . 0 9 0 0 0 0 0 0 0 0 0\n"
         "x ring r 0 0 8 0 0 0 0 0 1 0 3\nvoid colorfunc p 4 Dx+1 Dy+2 2-Dz . 0 0\np glow g 0 0 4 1 1 1 0\n"
         "g source all 0 0 4 0 0 1 360\n"
     )

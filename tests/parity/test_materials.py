@@ -62,9 +62,11 @@ def assert_alike(a: Floats, b: Floats, relative: float, absolute: float = 0.0) -
         "void plastic2 m 4 1 .5 0 . 0 6 .5 .4 .3 .06 .1 .3",
         "void metal2 m 6 1 0 .3 . -rz 40 0 6 .9 .7 .3 .8 .3 .1",
         "void trans2 m 4 .2 1 0 . 0 8 .7 .6 .5 .05 .12 .3 .6 .7",
+        "void metal2 m 6 -Py+.2 Px 0 . -rz 30 0 6 .9 .7 .3 .8 .1 .3",
+        "void plastic2 m 4 'if(Px-5,1,.3)' A1*A2 0 . 0 6 .5 .4 .3 .06 .1 .3",
         "void ashik2 m 4 1 .3 0 . 0 8 0 0 0 .9 .8 .7 20 100",
     ],
-    ids=lambda text: text.split()[1],
+    ids=lambda text: " ".join(text.split()[1:7:2]),
 )
 @pytest.mark.parametrize("side", ["reflected", "transmitted"])
 def test_highlights_of_a_sun(material: str, side: str, radiance: Radiance, tmp_path: Path) -> None:

@@ -183,6 +183,13 @@ impl<'d> Linker<'d> {
             let message = format!("{name}() is called with {} arguments: expected {needed}", arguments.len());
             return Err(Error::input(location.clone(), message));
         }
+        if callee == Callee::Builtin(Builtin::Lazy(Lazy::If)) {
+            // A condition that is known: the other branch may ask for what is not there.
+            let condition = self.expression(&arguments[0], location)?;
+            if let Node::Number(value) = self.code.nodes[condition as usize] {
+                return self.expression(&arguments[if value > 0.0 { 1 } else { 2 }], location);
+            }
+        }
         let mut items = Vec::with_capacity(arguments.len());
         for argument in arguments {
             items.push(Item { node: self.expression(argument, location)?, is_inverse: false });

@@ -44,6 +44,8 @@ fn functions_take_functions_and_look_at_arguments_when_needed() {
     assert_eq!(value(text, "fac(10)"), 3_628_800.0);
     assert_eq!(value(text, "select(0, 1, 2, 3)"), 3.0);
     assert_eq!(value(text, "if(0, 1/0, 5)"), 5.0);
+    // What a known condition leaves out need not be there.
+    assert_eq!(value(text, "if(AC - 2.5, A3, 5)"), 5.0);
 }
 
 #[test]

@@ -6,8 +6,11 @@ use rayon::prelude::*;
 use std::f64::consts::PI;
 use sunpeak_core::{Result, Vec3};
 
-/// Pixels in a part of the picture that is summed up at once: the result is the same on any number of threads.
+/// Pixels in a part of the picture that is summed up at once, at least: the result is the same on any number of threads.
 const PART: usize = 1 << 18;
+
+/// Parts of a picture, at most: each has sums and histograms of its own.
+const MOST_PARTS: usize = 32;
 
 /// Solid angles are counted in whole numbers of this many to the steradian, so that their order does not matter.
 const COUNTS_PER_SR: f64 = (1_u64 << 56) as f64;
@@ -87,7 +90,7 @@ pub(crate) fn parts<T: Send>(
     field: &Field,
     work: impl Fn(std::ops::Range<usize>) -> Result<T> + Sync,
 ) -> Result<Vec<T>> {
-    let rows = (PART / field.width).max(1);
+    let rows = (PART / field.width).max(field.height.div_ceil(MOST_PARTS)).max(1);
     (0..field.height.div_ceil(rows))
         .into_par_iter()
         .map(|part| {

@@ -8,8 +8,9 @@ use crate::guide::Guide;
 use crate::light::{DistantSources, Lamps};
 use crate::material::{
     Air, Alternate, Arrival, Emitter, EmitterKind, Inside, Material, MaterialId, Prism, fault_of,
+    fault_of_orientation,
 };
-use crate::shapes::{COINCIDENT, Ray, SmoothMesh};
+use crate::shapes::{COINCIDENT, MeshSurface, Ray};
 use std::sync::atomic::{AtomicU64, Ordering};
 use sunpeak_bsdf::PeakRule;
 use sunpeak_core::{Result, Rgb, Vec3};
@@ -36,8 +37,8 @@ pub struct World {
     pub(crate) rays: AtomicU64,
     /// Where diffuse surfaces look for light, if there are shades.
     pub(crate) guide: Option<Guide>,
-    /// Meshes with normals at their vertices.
-    pub(crate) meshes: Vec<SmoothMesh>,
+    /// Meshes with normals or local coordinates at their vertices.
+    pub(crate) meshes: Vec<MeshSurface>,
     /// Is there mist or antimatter?
     pub(crate) has_volumes: bool,
 }
@@ -58,8 +59,8 @@ pub(crate) enum Facing {
     Flat(Vec3),
     /// From an analytic shape.
     Curved(u32),
-    /// Interpolated between a triangle's corners.
-    Smooth { mesh: u32, triangle: u32 },
+    /// From a triangle of a mesh, which has local coordinates or normals to interpolate.
+    Mesh { mesh: u32, triangle: u32 },
 }
 
 /// What a path meets at a surface.
@@ -114,9 +115,12 @@ impl World {
         let normal = match self.object(hit).facing {
             Facing::Flat(normal) => normal,
             Facing::Curved(shape) => self.accel.shape(shape).normal(point),
-            Facing::Smooth { mesh, triangle } => {
-                let (flat, smooth) = self.meshes[mesh as usize].normals_at(triangle, point);
-                return Arrival::new(point, flat, ray.direction).smoothed(smooth);
+            Facing::Mesh { mesh, triangle } => {
+                let (normal, bent, local) = self.meshes[mesh as usize].at(triangle, point);
+                let (distance, travelled) = (hit.t, hit.t);
+                let flat =
+                    Arrival { local, distance, travelled, ..Arrival::new(point, normal, ray.direction) };
+                return bent.map_or(flat, |bent| flat.smoothed(bent));
             }
         };
         Arrival { distance: hit.t, travelled: hit.t, ..Arrival::new(point, normal, ray.direction) }
@@ -284,6 +288,8 @@ impl World {
         let fault = |material: &Material| match material {
             Material::Varying(varying) => varying.fault(),
             Material::Emitter(emitter) => fault_of(&emitter.patterns),
+            Material::Ward(ward) => ward.fault(),
+            Material::Ashikhmin(m) => fault_of_orientation(&m.orientation),
             Material::Function(function) => function.field.fault(),
             Material::Prism(prism) => prism.field.fault(),
             _ => None,

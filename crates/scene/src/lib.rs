@@ -34,6 +34,6 @@ pub use load::{Source, load_primitives};
 pub use picture::{BlockErrors, ExactSource, Picture};
 pub use scene::{
     Anisotropy, BsdfMaterial, FunctionMaterial, FunctionValue, Material, Medium, Mesh, Modifier, ModifierId,
-    ModifierKind, Pattern, Scene, Shape, Surface, Ward,
+    ModifierKind, Orientation, Pattern, Scene, Shape, Surface, Ward,
 };
 pub use view::{Camera, PixelRay, View, ViewKind, ViewRay};

@@ -121,8 +121,8 @@ pub enum Material {
         specular: Rgb,
         /// Exponents along and across the orientation: larger is smoother.
         powers: [f64; 2],
-        /// Along what the first exponent lies, world axes, not normalised; to be projected on the surface.
-        orientation: Vec3,
+        /// Along what the first exponent lies.
+        orientation: Orientation,
     },
     /// A volume of air that scatters; its surface is invisible.
     Mist {
@@ -198,7 +198,7 @@ pub struct Medium {
 }
 
 /// Arguments shared by plastic, metal and trans, and by plastic2, metal2 and trans2: Ward's model.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Ward {
     /// Diffuse colour (colour of everything for metal).
     pub color: Rgb,
@@ -210,11 +210,20 @@ pub struct Ward {
     pub anisotropy: Option<Anisotropy>,
 }
 
+/// A vector by which an anisotropic material is turned, to be projected on the surface.
+#[derive(Clone, Debug)]
+pub enum Orientation {
+    /// World axes, of any length.
+    Fixed(Vec3),
+    /// Three expressions, the vector in the field's frame.
+    Varying(Arc<Field>),
+}
+
 /// A second roughness.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Anisotropy {
-    /// Along what the first roughness lies, world axes, not normalised; to be projected on the surface.
-    pub orientation: Vec3,
+    /// Along what the first roughness lies.
+    pub orientation: Orientation,
     /// RMS slope across the orientation.
     pub roughness: f64,
 }

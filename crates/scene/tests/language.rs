@@ -39,9 +39,9 @@ fn materials_have_the_arguments_of_the_manual() {
         "Glow { radiance: DVec3(1.0, 2.0, 3.0), max_radius: -1.0 }",
         "Spotlight { radiance: DVec3(1.0, 2.0, 3.0), angle_deg: 40.0, axis: DVec3(0.0, 0.0, -2.0) }",
         "Metal(Ward { color: DVec3(1.0, 1.0, 1.0), specularity: 0.9, roughness: 0.1, anisotropy: Some(Anisotropy { \
-         orientation: DVec3(0.0, 2.0, 0.0), roughness: 0.3 }) })",
+         orientation: Fixed(DVec3(0.0, 2.0, 0.0)), roughness: 0.3 }) })",
         "Ashikhmin { diffuse: DVec3(0.1, 0.2, 0.3), specular: DVec3(0.4, 0.5, 0.6), powers: [7.0, 80.0], orientation: \
-         DVec3(1.0, 0.0, 0.0) }",
+         Fixed(DVec3(1.0, 0.0, 0.0)) }",
         "Mist { sources: [\"sun\"], extinction: DVec3(1.0, 2.0, 3.0), albedo: DVec3(0.0, 0.0, 0.0), eccentricity: 0.0 }",
         "Antimatter { clipped: [ModifierId(0)], face: None }",
     ];
@@ -190,7 +190,7 @@ fn wrong_texts_are_said_to_be_wrong_and_where() {
         (surface("white mesh m 0 0 0"), "expected a file, a transform if it is to be moved, and no real arguments"),
         (surface("white mesh m 2 a.rtm -rz 0 0"), "mesh \"m\": bad transform: expected a number after -rz"),
         (surface("void plastic2 a 4 1 0 0 . 0 6 1 1 1 0 0 .1 a sphere s 0 0 4 0 0 0 1"), "plastic2 \"a\": urough is 0, expected more than"),
-        (surface("void plastic2 a 3 1 0 0 0 6 1 1 1 0 .1 .1 a sphere s 0 0 4 0 0 0 1"), "the last ones ux uy uz and a function file"),
+        (surface("void plastic2 a 3 1 0 0 0 6 1 1 1 0 .1 .1 a sphere s 0 0 4 0 0 0 1"), "the last ones ux uy uz of the orientation and a"),
         (surface("void mist a 0 0 7 1 1 1 1 1 1 1 a sphere s 0 0 4 0 0 0 1"), "the eccentricity is 1, expected -1 to 1"),
         (surface("void antimatter a 1 b 0 0 a sphere s 0 0 4 0 0 0 1"), "the modifier that is to be clipped, \"b\", is not defined above"),
         (surface("void interface a 0 0 8 1 1 1 1.5 1 1 1 0 a sphere s 0 0 4 0 0 0 1"), "the index of refraction is 0"),
@@ -209,7 +209,7 @@ fn wrong_texts_are_said_to_be_wrong_and_where() {
         ),
         (
             "void aBSDF b 5 no.xml Nx 0 1 . 0 0 b sphere s 0 0 4 0 0 0 1".into(),
-            "the up vector's x is the expression \"Nx\": expected a number",
+            "the up vector varies over the surface: expected a constant",
         ),
         (
             "void brightfunc f 2 skybr skybright.cal 0 7 1 1 1 1 0 0 1 f sphere s 0 0 4 0 0 0 1".into(),

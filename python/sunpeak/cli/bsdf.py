@@ -6,6 +6,7 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
+from sunpeak.blinds import Blind
 from sunpeak.bsdf_plot import Kind, is_picture, plot_bsdf
 from sunpeak.cli.bsdf_fabric import fabric
 from sunpeak.cli.bsdf_show import show
@@ -73,6 +74,23 @@ def through(
         return
     for (t, p), value in zip(angles, values, strict=True):
         typer.echo(f"{t:g} {p:g} {value:.6f}")
+
+
+@app.command("blind")
+def blind(
+    output: Annotated[Path, typer.Option("--output", "-o", help="LBNL XML file to write.")],
+    basis: Annotated[
+        str, typer.Option(help="klems, klems-half, klems-quarter, or t4-256, t4-4096 … by number of cells.")
+    ] = "klems",
+    width: Annotated[float, typer.Option(help="Width of the slats over their spacing.")] = Blind.width,
+    tilt: Annotated[float, typer.Option(help="Tilt from the normal, up at the front, degrees.")] = Blind.tilt_deg,
+    scattered: Annotated[float, typer.Option(help="Share that the slats scatter through.")] = Blind.scattered,
+) -> None:
+    """Make a venetian blind of flat slats from formulas.
+
+    [dim]$[/dim] [cyan]sunpeak bsdf blind -o blind.xml --tilt 30[/cyan]
+    """
+    Blind(width, tilt, scattered).write(output, basis)
 
 
 @app.command("split")

@@ -12,26 +12,26 @@
 use super::{Arrival, Scattering, Smooth, SmoothSample, SmoothValue};
 use std::f64::consts::PI;
 use sunpeak_core::{Frame, Rgb, Vec3, luminance, warp};
+use sunpeak_scene::Orientation;
 
 /// Smallest cosine to the ray (Radiance keeps it from zero likewise).
 const SMALLEST_COSINE: f64 = 1e-3;
 
 /// The material.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Ashikhmin {
     pub diffuse: Rgb,
     /// Specular reflectance at normal incidence.
     pub specular: Rgb,
     /// Exponents along and across the orientation.
     pub powers: [f64; 2],
-    /// World axes; to be projected on the surface.
-    pub orientation: Vec3,
+    pub orientation: Orientation,
 }
 
 impl Ashikhmin {
     pub fn scatter(&self, arrival: &Arrival) -> Scattering<'static> {
         let normal = arrival.facing_normal();
-        let (frame, powers) = match normal.cross(self.orientation).try_normalize() {
+        let (frame, powers) = match normal.cross(arrival.orientation(&self.orientation)).try_normalize() {
             Some(y) => (Frame { x: y.cross(normal), y, z: normal }, self.powers),
             // Along the normal there is no orientation: one exponent of the same mean square width, as in Radiance.
             None => {
@@ -155,7 +155,7 @@ mod tests {
             diffuse: gray(diffuse),
             specular: gray(specular),
             powers,
-            orientation: Vec3::new(1.0, 0.3, 0.2),
+            orientation: Orientation::Fixed(Vec3::new(1.0, 0.3, 0.2)),
         };
         [of(0.3, 0.05, [5.0, 30.0]), of(0.0, 1.0, [10.0, 10.0]), of(0.5, 0.5, [100.0, 2.0])]
     }
@@ -199,7 +199,7 @@ mod tests {
     #[test]
     fn the_diffuse_lobe_is_the_published_one() {
         // Their diffuse albedo at normal incidence, integrated by hand: 28/23 (1 - 1/32) 23/28 R = 31/32 R.
-        let material = Ashikhmin { specular: Rgb::ZERO, ..materials()[0] };
+        let material = Ashikhmin { specular: Rgb::ZERO, ..materials()[0].clone() };
         let lobes = lobes_from(&material, Vec3::Z);
         let sum = hemispherical_sum(|d| lobes.evaluate(d).total());
         assert!((sum.x / (0.3 * 31.0 / 32.0) - 1.0).abs() < 1e-3, "{sum}");

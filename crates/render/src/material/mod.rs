@@ -23,7 +23,8 @@ pub(crate) use varying::{Mixture, Step, Varying, fault_of, tint_of};
 pub(crate) use volume::{Air, Antimatter, Flight, Inside, Mist};
 pub(crate) use ward::WardMaterial;
 
-use sunpeak_core::{Rgb, Vec3};
+use sunpeak_core::{Error, Rgb, Vec3};
+use sunpeak_scene::Orientation;
 
 /// Index of a compiled material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -79,6 +80,8 @@ pub(crate) struct Arrival {
     pub flat_normal: Vec3,
     /// Unit direction of the ray.
     pub direction: Vec3,
+    /// Local coordinates on a mesh.
+    pub local: [f64; 2],
     /// What patterns multiply the material's colour with.
     pub tint: Rgb,
     /// Way of the ray since it was last scattered [m].
@@ -89,7 +92,16 @@ pub(crate) struct Arrival {
 
 impl Arrival {
     pub fn new(point: Vec3, normal: Vec3, direction: Vec3) -> Self {
-        Self { point, normal, flat_normal: normal, direction, tint: Rgb::ONE, distance: 0.0, travelled: 0.0 }
+        Self {
+            point,
+            normal,
+            flat_normal: normal,
+            direction,
+            local: [0.0; 2],
+            tint: Rgb::ONE,
+            distance: 0.0,
+            travelled: 0.0,
+        }
     }
 
     /// The same with a smoothed normal. One that looks away from the ray is mirrored to its side (as Radiance does).
@@ -126,11 +138,30 @@ impl Arrival {
             || (direction.dot(self.normal) > 0.0) == (direction.dot(self.flat_normal) > 0.0)
     }
 
+    /// The vector by which an anisotropic material is turned here; zero where its mathematics fails.
+    pub fn orientation(&self, orientation: &Orientation) -> Vec3 {
+        match orientation {
+            Orientation::Fixed(vector) => *vector,
+            Orientation::Varying(field) => {
+                let vector = field.values(&self.ray_state()).map(|v: [f64; 3]| Vec3::from_array(v));
+                vector.map_or(Vec3::ZERO, |v| field.world_direction(v))
+            }
+        }
+    }
+
     /// Direction of the mirrored ray, not into the surface.
     pub fn mirrored(&self) -> Vec3 {
         let mirrored = reflect(self.direction, self.normal);
         let is_outside = (mirrored.dot(self.flat_normal) > 0.0) == self.at_front();
         if is_outside { mirrored } else { reflect(self.direction, self.flat_normal) }
+    }
+}
+
+/// What an evaluation of an orientation has found to be wrong.
+pub(crate) fn fault_of_orientation(orientation: &Orientation) -> Option<Error> {
+    match orientation {
+        Orientation::Fixed(_) => None,
+        Orientation::Varying(field) => field.fault(),
     }
 }
 
@@ -186,12 +217,7 @@ impl Material {
             Self::Table(m) => m.straight(arrival, direct),
             Self::Mist(_) | Self::Antimatter(_) => Rgb::ONE,
             Self::Function(m) => function::straight(m, arrival),
-            Self::Prism(_) => Rgb::ZERO,
-            Self::Ashikhmin(_)
-            | Self::Dielectric(_)
-            | Self::Mirror(_)
-            | Self::Emitter(_)
-            | Self::Varying(_) => Rgb::ZERO,
+            _ => Rgb::ZERO,
         }
     }
 
@@ -214,7 +240,7 @@ impl Material {
             Self::Function(m) => (m.diffuse_transmission + m.transmission).max_element() > 0.0,
             Self::Prism(_) => true,
             Self::Table(m) => m.is_aperture,
-            Self::Ashikhmin(_) | Self::Mirror(_) | Self::Emitter(_) | Self::Varying(_) => false,
+            _ => false,
         }
     }
 }

@@ -220,6 +220,7 @@ impl Arrival {
     pub fn ray_state(&self) -> RayState {
         RayState {
             travelled: self.travelled,
+            local: self.local,
             perturbed: self.normal,
             color: self.tint,
             ..RayState::new(self.point, self.flat_normal, self.direction, self.distance)

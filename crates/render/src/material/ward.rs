@@ -12,9 +12,10 @@
 
 mod transmission;
 
-use super::{Arrival, Scattering, Smooth, SmoothValue, smooth::SmoothSample};
+use super::{Arrival, Scattering, Smooth, SmoothValue, fault_of_orientation, smooth::SmoothSample};
 use std::f64::consts::{FRAC_1_PI, PI};
-use sunpeak_core::{Frame, Rgb, Vec3, luminance, warp};
+use sunpeak_core::{Error, Frame, Rgb, Vec3, luminance, warp};
+use sunpeak_scene::Orientation;
 use transmission::Transmission;
 
 /// Smallest specularity to which the Fresnel approximation is applied (Radiance, `FRESTHRESH`: just below 1.8 %).
@@ -39,7 +40,7 @@ pub(crate) struct WardMaterial {
     /// Roughness along and across the orientation; zero for a polished surface.
     alpha: [f64; 2],
     /// Along what the first roughness lies, world axes; `None` where both are the same.
-    orientation: Option<Vec3>,
+    orientation: Option<Orientation>,
     is_metal: bool,
     is_trans: bool,
     transmissivity: f64,
@@ -74,14 +75,18 @@ impl WardMaterial {
         specular_transmission: f64,
     ) -> Self {
         let is_polished = ward.anisotropy.is_none() && ward.roughness.powi(2) <= SMOOTH_ALPHA2;
-        let across = ward.anisotropy.map_or(ward.roughness, |a| a.roughness);
+        let across = ward.anisotropy.as_ref().map_or(ward.roughness, |a| a.roughness);
         let alpha = if is_polished { [0.0; 2] } else { [ward.roughness, across] };
         let is_rough_trans = !is_polished && transmissivity * specular_transmission > 0.0;
         Self {
             color: ward.color,
             specularity: ward.specularity,
             alpha,
-            orientation: ward.anisotropy.map(|a| a.orientation).filter(|_| alpha[0] != alpha[1]),
+            orientation: ward
+                .anisotropy
+                .as_ref()
+                .map(|a| a.orientation.clone())
+                .filter(|_| alpha[0] != alpha[1]),
             is_metal,
             is_trans: false,
             transmissivity,
@@ -92,6 +97,11 @@ impl WardMaterial {
 
     pub fn is_trans(&self) -> bool {
         self.is_trans
+    }
+
+    /// What an evaluation of its orientation has found to be wrong.
+    pub fn fault(&self) -> Option<Error> {
+        fault_of_orientation(self.orientation.as_ref()?)
     }
 
     /// Does it mirror?
@@ -109,9 +119,10 @@ impl WardMaterial {
 
     /// x along the orientation, z the normal; and the roughnesses. Where the orientation runs along the normal there is only
     /// a mean roughness, as in Radiance.
-    fn frame(&self, normal: Vec3) -> (Frame, [f64; 2]) {
-        let Some(orientation) = self.orientation else { return (Frame::from_normal(normal), self.alpha) };
-        match normal.cross(orientation).try_normalize() {
+    fn frame(&self, arrival: &Arrival) -> (Frame, [f64; 2]) {
+        let normal = arrival.facing_normal();
+        let Some(orientation) = &self.orientation else { return (Frame::from_normal(normal), self.alpha) };
+        match normal.cross(arrival.orientation(orientation)).try_normalize() {
             Some(y) => (Frame { x: y.cross(normal), y, z: normal }, self.alpha),
             None => {
                 let mean = (0.5 * (self.alpha[0].powi(2) + self.alpha[1].powi(2))).sqrt();
@@ -148,7 +159,7 @@ impl WardMaterial {
     }
 
     pub fn scatter(&self, arrival: &Arrival) -> Scattering<'static> {
-        let (frame, alpha) = self.frame(arrival.facing_normal());
+        let (frame, alpha) = self.frame(arrival);
         let mut w_in = frame.to_local(-arrival.direction);
         w_in.z = w_in.z.max(SMALLEST_COSINE);
         let w_in = w_in.normalize();

@@ -8,7 +8,7 @@ mod sphere;
 mod triangle;
 
 pub(crate) use cone::Cone;
-pub(crate) use mesh::SmoothMesh;
+pub(crate) use mesh::MeshSurface;
 pub(crate) use polygon::Polygon;
 pub(crate) use ring::Ring;
 pub(crate) use sphere::Sphere;

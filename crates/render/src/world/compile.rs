@@ -9,7 +9,7 @@ use crate::material::{
     Alternate, Antimatter, Ashikhmin, Dielectric, Emitter, EmitterKind, Glass, Material, MaterialId, Mirror,
     Mist, Mixture, Prism, Step, Table, Varying, WardMaterial,
 };
-use crate::shapes::{Analytic, Cone, Polygon, Ring, SmoothMesh, Sphere, Triangle};
+use crate::shapes::{Analytic, Cone, MeshSurface, Polygon, Ring, Sphere, Triangle};
 use std::{collections::HashMap, path::Path, sync::Arc};
 use sunpeak_bsdf::{Bsdf, PeakRule};
 use sunpeak_core::{Error, Frame, Location, Result, Vec3};
@@ -47,7 +47,7 @@ struct Compiler<'s> {
     mirrors: Vec<u32>,
     prisms: Vec<(u32, Vec3)>,
     shades: Vec<Triangle>,
-    meshes: Vec<SmoothMesh>,
+    meshes: Vec<MeshSurface>,
     /// Of each object: where its modifier stands in the scene. Of surfaces at the same place the later is seen.
     ranks: Vec<u32>,
     /// Of each object: which surface of the scene it is.
@@ -162,9 +162,9 @@ impl<'s> Compiler<'s> {
             ));
         }
         let index = self.meshes.len() as u32;
-        let is_smooth = |t: &&[u32; 3]| SmoothMesh::is_smooth(mesh, **t);
-        if mesh.triangles.iter().any(|t| is_smooth(&t)) {
-            self.meshes.push(SmoothMesh(mesh.clone()));
+        let has_more = MeshSurface::is_one(mesh);
+        if has_more {
+            self.meshes.push(MeshSurface(mesh.clone()));
         }
         // Light from more triangles than this is left to paths.
         let are_lamps = mesh.triangles.len() <= MAX_LAMPS_OF_MESH;
@@ -172,8 +172,8 @@ impl<'s> Compiler<'s> {
         for (i, corners) in mesh.triangles.iter().enumerate() {
             let triangle = Triangle(corners.map(|i| mesh.vertices[i as usize]));
             let Some(normal) = triangle.area_vector().try_normalize() else { continue };
-            let facing = match is_smooth(&corners) {
-                true => Facing::Smooth { mesh: index, triangle: i as u32 },
+            let facing = match has_more {
+                true => Facing::Mesh { mesh: index, triangle: i as u32 },
                 false => Facing::Flat(normal),
             };
             let object = self.add_object(surface, material, facing)?;
@@ -378,9 +378,12 @@ impl<'s> Compiler<'s> {
             Said::Interface { inside, outside } => {
                 Material::Dielectric(Dielectric::interface(inside, outside))
             }
-            &Said::Ashikhmin { diffuse, specular, powers, orientation } => {
-                Material::Ashikhmin(Ashikhmin { diffuse, specular, powers, orientation })
-            }
+            Said::Ashikhmin { diffuse, specular, powers, orientation } => Material::Ashikhmin(Ashikhmin {
+                diffuse: *diffuse,
+                specular: *specular,
+                powers: *powers,
+                orientation: orientation.clone(),
+            }),
             &Said::Mist { extinction, albedo, eccentricity, .. } => {
                 Material::Mist(Mist { extinction, albedo, eccentricity })
             }

@@ -1,6 +1,6 @@
 //! Argument counts and values.
 
-use crate::raw::{Primitive, parse_real};
+use crate::raw::Primitive;
 use sunpeak_core::{Rgb, Vec3};
 
 /// Type and name, for messages.
@@ -56,15 +56,4 @@ pub fn check_not_negative(primitive: &Primitive, values: &[(&str, f64)]) -> Resu
 /// A colour's channels with a name, for [`check_not_negative`].
 pub fn smallest(color: Rgb) -> f64 {
     color.min_element()
-}
-
-/// A string argument that Radiance evaluates as an expression, and that we want as a number.
-pub fn constant(primitive: &Primitive, index: usize, what: &str) -> Result<f64, String> {
-    let word = &primitive.strings[index];
-    parse_real(word).ok_or_else(|| {
-        format!(
-            "{}: the {what} is the expression \"{word}\": expected a number, expressions are not supported yet",
-            title(primitive)
-        )
-    })
 }

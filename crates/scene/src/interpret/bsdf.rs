@@ -1,13 +1,12 @@
 //! `BSDF` and `aBSDF`.
 
-use super::args::{check_counts, constant, title, triple};
-use super::orientation::orientation;
-use crate::{BsdfMaterial, LoadOptions, raw::Primitive};
-use std::path::Path;
+use super::Interpreter;
+use super::args::{check_counts, title, triple};
+use crate::{BsdfMaterial, raw::Primitive};
 use sunpeak_core::Rgb;
 
 /// The material; its XML file is found, not read.
-pub fn material(primitive: &Primitive, options: &LoadOptions, cwd: &Path) -> Result<BsdfMaterial, String> {
+pub fn material(interpreter: &mut Interpreter, primitive: &Primitive) -> Result<BsdfMaterial, String> {
     let extract_peak = primitive.kind.name == "aBSDF";
     // String arguments: [thickness] file ux uy uz function-file [transform].
     let file_at = usize::from(!extract_peak);
@@ -26,13 +25,16 @@ pub fn material(primitive: &Primitive, options: &LoadOptions, cwd: &Path) -> Res
         &[0, 3, 6, 9],
         "front, back and transmitted diffuse colour",
     )?;
-    let up = orientation(primitive, file_at + 1, "up vector")?;
-    let transform = up.transform;
-    let up = up.vector.try_normalize();
+    let transform = interpreter.transform(primitive, needed)?;
+    let up = interpreter.fixed_vector(primitive, file_at + 1, "up vector")?.try_normalize();
     let up = up.ok_or_else(|| format!("{}: the up vector is zero", title(primitive)))?;
-    let thickness = if extract_peak { 0.0 } else { constant(primitive, 0, "thickness")? * transform.scale() };
+    let thickness = if extract_peak {
+        0.0
+    } else {
+        interpreter.constant(primitive, 0, needed - 1, "thickness")? * transform.scale()
+    };
     let name = &primitive.strings[file_at];
-    let file = options.find(name, cwd, &primitive.directory, &primitive.location);
+    let file = interpreter.options.find(name, &interpreter.cwd, &primitive.directory, &primitive.location);
     let diffuse =
         |at: usize| if primitive.reals.len() >= at + 3 { triple(&primitive.reals, at) } else { Rgb::ZERO };
     Ok(BsdfMaterial {

@@ -3,9 +3,7 @@
 use super::{
     Interpreter, Named, Reference, Unusable, VOID,
     args::{check_counts, check_not_negative, smallest, title, triple, unsupported},
-    bsdf,
-    orientation::orientation,
-    volumes,
+    bsdf, volumes,
 };
 use crate::{Anisotropy, Material, ModifierId, ModifierKind, Ward, raw::Primitive};
 
@@ -18,10 +16,10 @@ const SMALLEST_ROUGHNESS: f64 = 1e-6;
 impl Interpreter<'_> {
     pub(super) fn kind_of(&mut self, primitive: &Primitive) -> Result<ModifierKind, Unusable> {
         let material = match primitive.kind.name {
-            "plastic" | "plastic2" => Material::Plastic(ward(primitive, "")?),
-            "metal" | "metal2" => Material::Metal(ward(primitive, "")?),
-            "trans" | "trans2" => trans(primitive)?,
-            "ashik2" => ashikhmin(primitive)?,
+            "plastic" | "plastic2" => Material::Plastic(self.ward(primitive, "")?),
+            "metal" | "metal2" => Material::Metal(self.ward(primitive, "")?),
+            "trans" | "trans2" => self.trans(primitive)?,
+            "ashik2" => self.ashikhmin(primitive)?,
             "glass" => glass(primitive)?,
             "dielectric" => dielectric(primitive)?,
             "interface" => volumes::interface(primitive)?,
@@ -38,7 +36,7 @@ impl Interpreter<'_> {
                 Material::Glow { radiance: triple(&primitive.reals, 0), max_radius: primitive.reals[3] }
             }
             "spotlight" => spotlight(primitive)?,
-            "BSDF" | "aBSDF" => Material::Bsdf(bsdf::material(primitive, self.options, &self.cwd)?),
+            "BSDF" | "aBSDF" => Material::Bsdf(bsdf::material(self, primitive)?),
             _ => {
                 if let Some(material) = self.function_material(primitive)? {
                     return Ok(ModifierKind::Material(material));
@@ -100,65 +98,66 @@ impl Interpreter<'_> {
             ))),
         }
     }
-}
 
-/// The arguments that plastic, metal and trans, and their anisotropic siblings, begin with; `more` follows in `trans`.
-fn ward(primitive: &Primitive, more: &str) -> Result<Ward, String> {
-    let is_anisotropic = primitive.kind.name.ends_with('2');
-    let strings = if is_anisotropic { primitive.strings.len() } else { 0 };
-    let (roughnesses, count) = if is_anisotropic { ("urough vrough", 6) } else { ("roughness", 5) };
-    let form = format!("red green blue specularity {roughnesses}{more}");
-    check_counts(primitive, &[strings], &[count + if more.is_empty() { 0 } else { 2 }], &form)?;
-    let roughness = primitive.reals[4];
-    let color = triple(&primitive.reals, 0);
-    let values = [("colour", smallest(color)), ("specularity", primitive.reals[3]), ("roughness", roughness)];
-    check_not_negative(primitive, &values)?;
-    let anisotropy = if is_anisotropic { Some(anisotropy(primitive)?) } else { None };
-    Ok(Ward { color, specularity: primitive.reals[3], roughness, anisotropy })
-}
-
-fn anisotropy(primitive: &Primitive) -> Result<Anisotropy, String> {
-    for (name, value) in [("urough", primitive.reals[4]), ("vrough", primitive.reals[5])] {
-        if value <= SMALLEST_ROUGHNESS {
-            return Err(format!(
-                "{}: {name} is {value}, expected more than {SMALLEST_ROUGHNESS}; without roughness use {}",
-                title(primitive),
-                primitive.kind.name.trim_end_matches('2')
-            ));
-        }
+    /// The arguments that plastic, metal and trans, and their anisotropic siblings, begin with; `more` follows in `trans`.
+    fn ward(&mut self, primitive: &Primitive, more: &str) -> Result<Ward, String> {
+        let is_anisotropic = primitive.kind.name.ends_with('2');
+        let strings = if is_anisotropic { primitive.strings.len() } else { 0 };
+        let (roughnesses, count) = if is_anisotropic { ("urough vrough", 6) } else { ("roughness", 5) };
+        let form = format!("red green blue specularity {roughnesses}{more}");
+        check_counts(primitive, &[strings], &[count + if more.is_empty() { 0 } else { 2 }], &form)?;
+        let roughness = primitive.reals[4];
+        let color = triple(&primitive.reals, 0);
+        let values =
+            [("colour", smallest(color)), ("specularity", primitive.reals[3]), ("roughness", roughness)];
+        check_not_negative(primitive, &values)?;
+        let anisotropy = if is_anisotropic { Some(self.anisotropy(primitive)?) } else { None };
+        Ok(Ward { color, specularity: primitive.reals[3], roughness, anisotropy })
     }
-    let orientation = orientation(primitive, 0, "orientation")?.vector;
-    Ok(Anisotropy { orientation, roughness: primitive.reals[5] })
-}
 
-fn trans(primitive: &Primitive) -> Result<Material, String> {
-    let ward = ward(primitive, " transmissivity specular-transmission")?;
-    let [.., transmissivity, specular_transmission] = primitive.reals[..] else {
-        return Err(format!("{}: no real arguments", title(primitive)));
-    };
-    let values = [("transmissivity", transmissivity), ("specular transmission", specular_transmission)];
-    check_not_negative(primitive, &values)?;
-    Ok(Material::Trans { ward, transmissivity, specular_transmission })
-}
+    fn anisotropy(&mut self, primitive: &Primitive) -> Result<Anisotropy, String> {
+        for (name, value) in [("urough", primitive.reals[4]), ("vrough", primitive.reals[5])] {
+            if value <= SMALLEST_ROUGHNESS {
+                return Err(format!(
+                    "{}: {name} is {value}, expected more than {SMALLEST_ROUGHNESS}; without roughness use {}",
+                    title(primitive),
+                    primitive.kind.name.trim_end_matches('2')
+                ));
+            }
+        }
+        let orientation = self.orientation(primitive, 0, "orientation")?;
+        Ok(Anisotropy { orientation, roughness: primitive.reals[5] })
+    }
 
-fn ashikhmin(primitive: &Primitive) -> Result<Material, String> {
-    check_counts(
-        primitive,
-        &[primitive.strings.len()],
-        &[8],
-        "dred dgrn dblu sred sgrn sblu u-power v-power",
-    )?;
-    let (diffuse, specular) = (triple(&primitive.reals, 0), triple(&primitive.reals, 3));
-    let powers = [primitive.reals[6], primitive.reals[7]];
-    let values = [
-        ("diffuse colour", smallest(diffuse)),
-        ("specular colour", smallest(specular)),
-        ("u-power", powers[0]),
-        ("v-power", powers[1]),
-    ];
-    check_not_negative(primitive, &values)?;
-    let orientation = orientation(primitive, 0, "orientation")?.vector;
-    Ok(Material::Ashikhmin { diffuse, specular, powers, orientation })
+    fn trans(&mut self, primitive: &Primitive) -> Result<Material, String> {
+        let ward = self.ward(primitive, " transmissivity specular-transmission")?;
+        let [.., transmissivity, specular_transmission] = primitive.reals[..] else {
+            return Err(format!("{}: no real arguments", title(primitive)));
+        };
+        let values = [("transmissivity", transmissivity), ("specular transmission", specular_transmission)];
+        check_not_negative(primitive, &values)?;
+        Ok(Material::Trans { ward, transmissivity, specular_transmission })
+    }
+
+    fn ashikhmin(&mut self, primitive: &Primitive) -> Result<Material, String> {
+        check_counts(
+            primitive,
+            &[primitive.strings.len()],
+            &[8],
+            "dred dgrn dblu sred sgrn sblu u-power v-power",
+        )?;
+        let (diffuse, specular) = (triple(&primitive.reals, 0), triple(&primitive.reals, 3));
+        let powers = [primitive.reals[6], primitive.reals[7]];
+        let values = [
+            ("diffuse colour", smallest(diffuse)),
+            ("specular colour", smallest(specular)),
+            ("u-power", powers[0]),
+            ("v-power", powers[1]),
+        ];
+        check_not_negative(primitive, &values)?;
+        let orientation = self.orientation(primitive, 0, "orientation")?;
+        Ok(Material::Ashikhmin { diffuse, specular, powers, orientation })
+    }
 }
 
 fn glass(primitive: &Primitive) -> Result<Material, String> {

@@ -1,38 +1,77 @@
-//! The vector by which anisotropic materials are turned: string arguments `ux uy uz function-file [transform]`.
+//! Expressions of materials that are no functions: the vector by which an anisotropic one is turned, a proxy's thickness.
 
-use super::args::{constant, title};
-use crate::{command::trailing_transform, raw::Primitive};
+use super::{Interpreter, args::title};
+use crate::{
+    Orientation,
+    command::trailing_transform,
+    raw::{Primitive, parse_real},
+};
 use sunpeak_core::{Transform, Vec3};
 
-/// An orientation and what is done to it.
-pub struct Orientation {
-    /// World axes, not normalised.
-    pub vector: Vec3,
-    /// The transform of the string arguments, already applied.
-    pub transform: Transform,
-}
+impl Interpreter<'_> {
+    /// The vector of string arguments `at` to `at + 2`; the function file and the transform follow. `what` says what it is.
+    pub(super) fn orientation(
+        &mut self,
+        primitive: &Primitive,
+        at: usize,
+        what: &str,
+    ) -> Result<Orientation, String> {
+        let needed = at + 4;
+        if primitive.strings.len() < needed {
+            return Err(format!(
+                "wrong number of arguments of {}: expected at least {needed} string arguments, the last ones ux uy uz of the \
+                 {what} and a function file or \".\", found {}",
+                title(primitive),
+                primitive.strings.len()
+            ));
+        }
+        let transform = self.transform(primitive, needed)?;
+        let numbers: Vec<f64> = primitive.strings[at..at + 3].iter().filter_map(|w| parse_real(w)).collect();
+        if let [x, y, z] = numbers[..] {
+            return Ok(Orientation::Fixed(transform.vector(Vec3::new(x, y, z))));
+        }
+        let field = self.field(primitive, at + 3, &[at, at + 1, at + 2], &[], Vec::new())?;
+        Ok(match [0, 1, 2].map(|root| field.constant(root)) {
+            [Some(x), Some(y), Some(z)] => Orientation::Fixed(transform.vector(Vec3::new(x, y, z))),
+            _ => Orientation::Varying(field),
+        })
+    }
 
-/// The orientation whose first component is string argument `at`; `what` says what it is.
-pub fn orientation(primitive: &Primitive, at: usize, what: &str) -> Result<Orientation, String> {
-    let needed = at + 4;
-    if primitive.strings.len() < needed {
-        return Err(format!(
-            "wrong number of arguments of {}: expected at least {needed} string arguments, the last ones ux uy uz and a \
-             function file or \".\", found {}",
-            title(primitive),
-            primitive.strings.len()
-        ));
+    /// A vector that has to be the same everywhere.
+    pub(super) fn fixed_vector(
+        &mut self,
+        primitive: &Primitive,
+        at: usize,
+        what: &str,
+    ) -> Result<Vec3, String> {
+        match self.orientation(primitive, at, what)? {
+            Orientation::Fixed(vector) => Ok(vector),
+            Orientation::Varying(_) => {
+                Err(format!("{}: the {what} varies over the surface: expected a constant", title(primitive)))
+            }
+        }
     }
-    let word = &primitive.strings[at + 3];
-    if word != "." {
-        return Err(format!(
-            "{}: the function file is \"{word}\": expected \".\", function files are not supported yet",
-            title(primitive)
-        ));
+
+    /// A number, or a constant expression of the function file at string argument `file`.
+    pub(super) fn constant(
+        &mut self,
+        primitive: &Primitive,
+        at: usize,
+        file: usize,
+        what: &str,
+    ) -> Result<f64, String> {
+        if let Some(number) = parse_real(&primitive.strings[at]) {
+            return Ok(number);
+        }
+        let field = self.field(primitive, file, &[at], &[], Vec::new())?;
+        field.constant(0).ok_or_else(|| {
+            format!("{}: the {what} varies over the surface: expected a constant", title(primitive))
+        })
     }
-    let transform = trailing_transform(&primitive.strings[needed..])
-        .map_err(|message| format!("{}: bad transform: {message}", title(primitive)))?;
-    let component = |i: usize| constant(primitive, at + i, &format!("{what}'s {}", ["x", "y", "z"][i]));
-    let vector = transform.vector(Vec3::new(component(0)?, component(1)?, component(2)?));
-    Ok(Orientation { vector, transform })
+
+    /// The transform of the string arguments from `at`.
+    pub(super) fn transform(&self, primitive: &Primitive, at: usize) -> Result<Transform, String> {
+        trailing_transform(&primitive.strings[at..])
+            .map_err(|message| format!("{}: bad transform: {message}", title(primitive)))
+    }
 }

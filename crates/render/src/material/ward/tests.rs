@@ -1,7 +1,7 @@
 use super::*;
 use crate::testing::{chi_square_of_sampler, hemispherical_sum};
 use sunpeak_core::gray;
-use sunpeak_scene::{Anisotropy, Ward};
+use sunpeak_scene::{Anisotropy, Orientation, Ward};
 
 fn arrival(theta: f64) -> Arrival {
     let direction = Vec3::new(theta.sin() * 0.6, theta.sin() * 0.8, -theta.cos());
@@ -9,7 +9,8 @@ fn arrival(theta: f64) -> Arrival {
 }
 
 fn materials() -> Vec<(&'static str, WardMaterial)> {
-    let anisotropy = |roughness| Some(Anisotropy { orientation: Vec3::new(1.0, 0.3, 0.2), roughness });
+    let anisotropy =
+        |roughness| Some(Anisotropy { orientation: Orientation::Fixed(Vec3::new(1.0, 0.3, 0.2)), roughness });
     let ward = |specularity, roughness| Ward {
         color: Rgb::new(0.8, 0.6, 0.5),
         specularity,
@@ -114,9 +115,10 @@ fn clear_trans_lets_its_share_through_straight() {
 #[test]
 fn of_two_equal_roughnesses_the_orientation_is_nothing() {
     let ward = |anisotropy| Ward { color: gray(0.5), specularity: 0.1, roughness: 0.2, anisotropy };
-    let across = Some(Anisotropy { orientation: Vec3::new(0.0, 1.0, 0.5), roughness: 0.2 });
+    let across =
+        Some(Anisotropy { orientation: Orientation::Fixed(Vec3::new(0.0, 1.0, 0.5)), roughness: 0.2 });
     for theta in [0.2, 1.1] {
-        let [one, two] = [ward(None), ward(across)]
+        let [one, two] = [ward(None), ward(across.clone())]
             .map(|w| WardMaterial::trans(&w, 0.5, 0.5).scatter(&arrival(theta)).smooth);
         for direction in [Vec3::new(0.1, 0.5, 0.8), Vec3::new(0.3, 0.5, -0.6)].map(Vec3::normalize) {
             let (a, b) = (one.evaluate(direction).total(), two.evaluate(direction).total());
