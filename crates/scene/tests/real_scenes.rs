@@ -70,6 +70,7 @@ fn scenes_load_or_say_what_is_missing() {
         "illum_glass",
         "illum_trans2",
         "mirror",
+        "gymbal",
         "mist",
         "prism1",
         "prism2",
