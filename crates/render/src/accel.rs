@@ -210,7 +210,9 @@ impl Accel {
 
     fn single_precision(&self, ray: &Ray, start: f64, limit: f64) -> obvhs::ray::Ray {
         let origin = (ray.at(start) - self.center).as_vec3a();
-        obvhs::ray::Ray::new(origin, ray.direction.as_vec3a(), 0.0, self.single_limit(limit - start))
+        // Adding zero makes +0 of -0, of which `obvhs` would miss everything.
+        let direction = (ray.direction + Vec3::ZERO).as_vec3a();
+        obvhs::ray::Ray::new(origin, direction, 0.0, self.single_limit(limit - start))
     }
 
     /// A limit that rounding cannot pull in front of a hit.
