@@ -124,7 +124,7 @@ def table1(
 
     A box room behind a 2 % fabric in four bases, without and with peak extraction, by Sunpeak and, where pyradiance is
     installed, by Radiance and evalglare: table1.md, table1.json, table1.png, the scene files and all pictures. About
-    two minutes on two cores, six with Radiance.
+    two minutes on two cores, four with Radiance.
 
     [dim]$[/dim] [cyan]sunpeak study table1 -o table1[/cyan]
 
@@ -157,7 +157,7 @@ def figures(
 
     View out, shadows, the sun in the field of view: without and with peak extraction, by Sunpeak and, where pyradiance
     is installed, by Radiance and evalglare: figure4.png, figures5-6.png, figures.md, figures.json, the scene files and
-    all pictures. About two minutes on two cores, four with Radiance.
+    all pictures. About a minute on two cores, two with Radiance.
 
     [dim]$[/dim] [cyan]sunpeak study figures -o figures[/cyan]
     """

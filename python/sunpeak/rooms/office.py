@@ -30,8 +30,8 @@ TREES: tuple[tuple[Point, float], ...] = (
 )
 """Middles and radii of the crowns [m]."""
 
-ACROSS = "-vtv -vp -1.4 4.4 1.5 -vd 0.34 -1 -0.16 -vu 0 0 1 -vh 62 -vv 46"
-"""Into the room from its back: window, east wall and desk."""
+ACROSS = "-vtv -vp 0.6 4.5 1.5 -vd -0.1 -1 -0.16 -vu 0 0 1 -vh 62 -vv 46"
+"""Into the room from its back: window, desk and floor, the trees outside."""
 
 
 def office_text() -> str:
