@@ -75,6 +75,7 @@ fn scenes_load_or_say_what_is_missing() {
         "prism1",
         "prism2",
         "ringlight",
+        "prism1",
         "spotcones",
         "spotlights",
         "torus",
