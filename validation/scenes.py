@@ -136,6 +136,15 @@ CASES = [
         "front_cap.rad", "rect_fixture.rad", "spectral_objs.rad"),
     rif("tfunc", "inside.vf", *WALLS, "rect_opening.rad", "front_cap.rad", "ball_in_cube.rad", "sunset_sky.rad",
         "illum_tfunc.rad"),
+    # The same by the sun alone: function materials of Radiance scatter the light of sources, not that of the sky.
+    Case(
+        "tfunc_sun",
+        "radiance-renders",
+        (*WALLS, "rect_opening.rad", "front_cap.rad", "ball_in_cube.rad", "illum_tfunc.rad"),
+        "-vf inside.vf",
+        1,
+        "void light sol 0 0 3 2.5e4 2.5e4 2.5e4\nsol source bigsun 0 0 4 -0.9338 -0.35 0.001 1\n",
+    ),
     rif("trans", "inside.vf", *WALLS, "rect_opening.rad", "front_cap.rad", "ballcompare.rad", "spotlights.rad",
         "rect_fixture.rad", "trans_pane.rad", "sunset_sky.rad"),
     rif("trans2", "inside.vf", *WALLS, "rect_opening.rad", "front_cap.rad", "gymbal.rad", "sunset_sky.rad",
