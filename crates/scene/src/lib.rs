@@ -33,7 +33,7 @@ pub use files::LoadOptions;
 pub use load::{Source, load_primitives};
 pub use picture::{BlockErrors, ExactSource, Picture};
 pub use scene::{
-    Anisotropy, BsdfMaterial, FunctionMaterial, FunctionValue, Material, Medium, Mesh, Modifier, ModifierId,
-    ModifierKind, Orientation, Pattern, Scene, Shape, Surface, Ward,
+    Anisotropy, BsdfMaterial, ComponentModifier, FunctionMaterial, FunctionValue, Material, Medium, Mesh,
+    Modifier, ModifierId, ModifierKind, Orientation, Pattern, Scene, Shape, Surface, Ward, WgmdMaterial,
 };
 pub use view::{Camera, PixelRay, View, ViewKind, ViewRay};

@@ -179,6 +179,8 @@ pub enum Material {
     Bsdf(BsdfMaterial),
     /// Diffuse, and scattering by a function of the direction to the light.
     Function(Box<FunctionMaterial>),
+    /// `WGMDfunc`: Ward's model with a modifier and functions for each component.
+    Wgmd(Box<WgmdMaterial>),
     /// Sends rays on in other directions.
     Prism {
         /// For each way four expressions: the share, and the direction of the ray that goes on.
@@ -306,6 +308,33 @@ impl FunctionMaterial {
         };
         value.max(Rgb::ZERO)
     }
+}
+
+/// `WGMDfunc`: diffuse and Gaussian components, each with a modifier of its own.
+#[derive(Clone, Debug)]
+pub struct WgmdMaterial {
+    /// Diffuse reflectance of front and back; the material's own modifier colours it.
+    pub diffuse: [Rgb; 2],
+    /// Diffuse transmittance.
+    pub diffuse_transmission: Rgb,
+    /// What colours the specular reflection.
+    pub reflection_modifier: ComponentModifier,
+    /// What colours the specular transmission.
+    pub transmission_modifier: ComponentModifier,
+    /// What colours the diffuse transmission.
+    pub diffuse_transmission_modifier: ComponentModifier,
+    /// Nine expressions: specular reflectance and its two roughnesses, specular transmittance and its two, and the vector along
+    /// which the first roughnesses lie.
+    pub field: Arc<Field>,
+}
+
+/// The modifier of one component of a material.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ComponentModifier {
+    /// The material's own (`inherit`).
+    Own,
+    /// Another one; `None` is `void`.
+    Named(Option<ModifierId>),
 }
 
 /// `BSDF` and `aBSDF`.

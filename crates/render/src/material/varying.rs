@@ -80,9 +80,14 @@ fn field_of(pattern: &Pattern) -> Option<&Arc<Field>> {
 
 /// What steps without materials multiply a colour with.
 pub(crate) fn tint_of(steps: &[Step], ray: &RayState) -> Rgb {
+    modulation_of(steps, ray).tint
+}
+
+/// What steps without materials do together.
+pub(crate) fn modulation_of(steps: &[Step], ray: &RayState) -> Modulation {
     let mut sum = Modulation::NONE;
     steps.iter().for_each(|step| step.add_to(&mut sum, ray));
-    sum.tint
+    sum
 }
 
 /// What an evaluation has found to be wrong with one of these.
@@ -191,11 +196,7 @@ impl Step {
             }
             Self::Mixture(mixture) => {
                 let Some(share) = mixture.share(ray) else { return };
-                let part = |varying: &Varying| {
-                    let mut part = Modulation::NONE;
-                    varying.steps.iter().for_each(|step| step.add_to(&mut part, ray));
-                    part
-                };
+                let part = |varying: &Varying| modulation_of(&varying.steps, ray);
                 let mixed = part(&mixture.fore).mixed(part(&mixture.back), share);
                 sum.tint *= mixed.tint;
                 sum.bend += mixed.bend;

@@ -10,6 +10,7 @@ mod patterns;
 mod sky;
 mod surfaces;
 mod volumes;
+mod wgmd;
 
 use crate::{
     LoadOptions, Modifier, ModifierId, ModifierKind, Scene, Surface,
