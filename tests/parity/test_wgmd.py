@@ -33,8 +33,8 @@ RING = "x ring r 0 0 8 0 0 0 .3 -.4 .9 0 1"
 def test_in_the_sun(material: str, radiance: Radiance, tmp_path: Path) -> None:
     """Direct light alone, from front and back, into the lobes too.
 
-    The transmitted lobe is met near the normal: at larger angles Radiance's gives out more than it gets where the roughnesses differ,
-    ours does not.
+    The transmitted lobe is met near the normal: at larger angles Radiance's gives out more than it gets where the
+    roughnesses differ, ours does not.
     """
     sun = SUN.replace(" .2\n", " .1\n")
     light = np.array([0.3, -0.5, 0.8]) / np.linalg.norm([0.3, -0.5, 0.8])
@@ -57,7 +57,8 @@ def test_in_the_sun(material: str, radiance: Radiance, tmp_path: Path) -> None:
 def test_deltas_are_coloured_by_their_modifiers(radiance: Radiance, tmp_path: Path) -> None:
     """A uniform sky behind and before.
 
-    Radiance's Fresnel approximation is 0.0009 off at normal incidence here, by another constant than in its other materials.
+    Radiance's Fresnel approximation is 0.0009 off at normal incidence here, by another constant than in its other
+    materials.
     """
     text = (
         f"{MODIFIERS}red WGMDfunc x 13 blue .3 0 0 red .4 0 0 void 0 0 1 . 0 9 0 0 0 0 0 0 0 0 0\n"

@@ -9,6 +9,7 @@ mod orientation;
 mod patterns;
 mod sky;
 mod surfaces;
+mod text;
 mod volumes;
 mod wgmd;
 
