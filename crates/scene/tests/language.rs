@@ -229,7 +229,7 @@ fn wrong_texts_are_said_to_be_wrong_and_where() {
         ),
         (
             "void mixfunc m 4 void grey Px . 0 0 m sphere s 0 0 4 0 0 0 1".into(),
-            "the modifier to be mixed, \"grey\", is not defined above",
+            "mixfunc \"m\": the modifier to be mixed, \"grey\", is not defined above",
         ),
         (
             "void brightdata b 4 noop no.dat . Px 0 0 b plastic p 0 0 5 1 1 1 0 0 p sphere s 0 0 4 0 0 0 1".into(),
