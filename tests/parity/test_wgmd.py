@@ -26,7 +26,7 @@ MATERIALS = {
     "a mirror, diffuse": f"void WGMDfunc x 13 void .3 0 0 void 0 0 0 void 0 0 1 . 0 {DIFFUSE}",
 }
 # Flat, and met at both sides.
-RING = "x ring r 0 0 8 0 0 0 .3 -.4 .9 0 1"
+RING = "x ring r 0 0 8 0 0 0 .3 -.4 .9 0 1\n"
 
 
 @pytest.mark.parametrize("material", MATERIALS.values(), ids=MATERIALS.keys())
@@ -66,6 +66,31 @@ def test_deltas_are_coloured_by_their_modifiers(radiance: Radiance, tmp_path: Pa
     )
     ours, theirs = both(radiance, tmp_path, text, samples=16384)
     assert_same(ours, theirs, 1e-2)
+
+
+def test_a_glazing_lets_the_sun_through(radiance: Radiance, tmp_path: Path) -> None:
+    """As `genglaze` writes them: modifiers by the angle, nothing diffuse. Shadow rays find the sun."""
+    text = (
+        "void light l 0 0 3 1e6 1e6 1e6\nl source sun 0 0 4 .3 -.2 1 .5\n"
+        "void colorfunc t 4 .9*abs(Rdot) .8*abs(Rdot) .7 . 0 0\nvoid brightfunc r 2 .2-.1*Rdot . 0 0\n"
+        "void WGMDfunc x 13 r 1 0 0 t 1 0 0 void 0 0 1 . 0 9 0 0 0 0 0 0 0 0 0\n"
+        "x polygon p 0 0 12 -2 -2 2 2 -2 2 2 2 2.5 -2 2 2.5\n"
+    )
+    sensors = np.array([[x, y, 0, 0.1 * x, 0, 1] for x in (-4, -0.6, 0, 1) for y in (-0.3, 0.3)], dtype=np.float64)
+    ours, theirs = both(radiance, tmp_path, text, "-I", "-dj", "0", rays=sensors, samples=64)
+    assert (ours > 0).all()
+    assert_same(ours, theirs, 2e-3)
+
+
+@pytest.mark.parametrize("value", ["1e200", "1e-200", "-1", "sqrt(-1-Px*Px)", "1/(Px-Px)"])
+def test_no_value_makes_light_that_is_no_number(value: str, tmp_path: Path) -> None:
+    for place in (1, 2, 3, 5, 6, 7, 9):
+        words = ["void", ".3", ".2", ".2", "void", ".3", ".2", ".3", "void", "0", "0", "1", "."]
+        words[place] = value
+        (tmp_path / "scene.rad").write_text(f"{SUN}void WGMDfunc x 13 {' '.join(words)} 0 {DIFFUSE}\n{RING}{BEHIND}")
+        scene = sp.Scene.load([tmp_path / "scene.rad"])
+        found = sp.trace(scene, -3 * TOWARDS[:20], TOWARDS[:20], samples=16, max_bounces=2)
+        assert np.isfinite(found).all(), (value, place)
 
 
 def test_it_is_trans2_where_that_says_the_same(tmp_path: Path) -> None:
