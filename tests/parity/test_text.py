@@ -89,12 +89,15 @@ def test_holes_in_the_shape_of_letters(radiance: Radiance, tmp_path: Path) -> No
     assert_equal(ours, theirs)
 
 
-def test_text_moves_with_xform(radiance: Radiance, tmp_path: Path) -> None:
+@pytest.mark.parametrize("use", ["xform", "instance"])
+def test_text_moves(use: str, radiance: Radiance, tmp_path: Path) -> None:
     font_and_words(tmp_path)
     (tmp_path / "sign.rad").write_text(
         f"void brighttext t 2 font.fnt words.txt 0 12 {FRAME} .9 .1 -.1\nt glow g 0 0 4 1 1 1 0\ng {PLANE}"
     )
-    scene = "!xform -s 1.3 -rz 25 -t .2 -.3 0 sign.rad\n"
+    radiance.octree(tmp_path / "sign.oct", "sign.rad", folder=tmp_path)
+    moved = "-s 1.3 -rz 25 -t .2 -.3 0"
+    scene = f"!xform {moved} sign.rad\n" if use == "xform" else f"void instance i 9 sign.oct {moved} 0 0\n"
     assert_equal(*both(radiance, tmp_path, scene, rays=on_a_plane()))
 
 
