@@ -139,6 +139,7 @@ fn mirrors(world: &World, id: crate::material::MaterialId) -> bool {
         Material::Mirror(m) => m.alternate.flatten().is_none_or(|a| mirrors(world, a)),
         Material::Emitter(e) => matches!(e.kind, Illum { alternate: Some(a) } if mirrors(world, a)),
         Material::Ward(m) => m.is_polished(),
+        Material::Wgmd(m) => m.is_polished(),
         Material::Varying(v) => v.materials().into_iter().any(|id| mirrors(world, id)),
         _ => false,
     }

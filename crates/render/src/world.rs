@@ -291,6 +291,7 @@ impl World {
             Material::Ward(ward) => ward.fault(),
             Material::Ashikhmin(m) => fault_of_orientation(&m.orientation),
             Material::Function(function) => function.field.fault(),
+            Material::Wgmd(wgmd) => wgmd.fault(),
             Material::Prism(prism) => prism.field.fault(),
             _ => None,
         };

@@ -23,6 +23,7 @@ mod load;
 mod picture;
 pub mod raw;
 mod scene;
+mod text;
 mod view;
 
 pub use check::SceneCheck;
@@ -33,7 +34,9 @@ pub use files::LoadOptions;
 pub use load::{Source, load_primitives};
 pub use picture::{BlockErrors, ExactSource, Picture};
 pub use scene::{
-    Anisotropy, BsdfMaterial, FunctionMaterial, FunctionValue, Material, Medium, Mesh, Modifier, ModifierId,
-    ModifierKind, Orientation, Pattern, Scene, Shape, Surface, Ward,
+    Anisotropy, BsdfMaterial, ComponentModifier, FunctionMaterial, FunctionValue, Material, Medium, Mesh,
+    Modifier, ModifierId, ModifierKind, Orientation, Pattern, Scene, Shape, Surface, Ward, Weight,
+    WgmdMaterial,
 };
+pub use text::{Font, Text};
 pub use view::{Camera, PixelRay, View, ViewKind, ViewRay};

@@ -1,6 +1,7 @@
 //! What scene files say: surfaces and modifiers, in file order, with positions for error messages.
 
 use crate::field::{Field, RayState, Spectrum};
+use crate::text::Text;
 use std::{path::PathBuf, sync::Arc};
 use sunpeak_core::{Location, Rgb, Vec3};
 use sunpeak_sky::SkyDistribution;
@@ -42,15 +43,24 @@ pub enum ModifierKind {
     Pattern(Pattern),
     /// Bends the normal: adds its three values, in its own frame, to the unit normal.
     Texture(Arc<Field>),
-    /// One modifier or another: `fore` with the share that the weight's value says, 0 to 1, `back` with the rest.
+    /// One modifier or another: `fore` with the share that the weight says, 0 to 1, `back` with the rest.
     Mixture {
         /// Foreground; `None` is `void`.
         fore: Option<ModifierId>,
         /// Background; `None` is `void`.
         back: Option<ModifierId>,
         /// Share of the foreground.
-        weight: Arc<Field>,
+        weight: Weight,
     },
+}
+
+/// What decides between the two sides of a mixture.
+#[derive(Clone, Debug)]
+pub enum Weight {
+    /// The value of a field is the share of the foreground.
+    Field(Arc<Field>),
+    /// The foreground is where the text is.
+    Text(Arc<Text>),
 }
 
 /// Patterns.
@@ -69,6 +79,15 @@ pub enum Pattern {
         field: Arc<Field>,
         /// Wavelengths and their weights.
         spectrum: Spectrum,
+    },
+    /// One colour where a text is, another where it is not.
+    Text {
+        /// The text.
+        text: Arc<Text>,
+        /// Its colour.
+        fore: Rgb,
+        /// The colour of all around it.
+        back: Rgb,
     },
     /// `brightfunc … skybr skybright.cal` or `skybright perezlum.cal`: the sky over the ray's direction.
     Sky(SkyDistribution),
@@ -179,6 +198,8 @@ pub enum Material {
     Bsdf(BsdfMaterial),
     /// Diffuse, and scattering by a function of the direction to the light.
     Function(Box<FunctionMaterial>),
+    /// `WGMDfunc`: Ward's model with a modifier and functions for each component.
+    Wgmd(Box<WgmdMaterial>),
     /// Sends rays on in other directions.
     Prism {
         /// For each way four expressions: the share, and the direction of the ray that goes on.
@@ -306,6 +327,33 @@ impl FunctionMaterial {
         };
         value.max(Rgb::ZERO)
     }
+}
+
+/// `WGMDfunc`: diffuse and Gaussian components, each with a modifier of its own.
+#[derive(Clone, Debug)]
+pub struct WgmdMaterial {
+    /// Diffuse reflectance of front and back; the material's own modifier colours it.
+    pub diffuse: [Rgb; 2],
+    /// Diffuse transmittance.
+    pub diffuse_transmission: Rgb,
+    /// What colours the specular reflection.
+    pub reflection_modifier: ComponentModifier,
+    /// What colours the specular transmission.
+    pub transmission_modifier: ComponentModifier,
+    /// What colours the diffuse transmission.
+    pub diffuse_transmission_modifier: ComponentModifier,
+    /// Nine expressions: specular reflectance and its two roughnesses, specular transmittance and its two, and the vector along
+    /// which the first roughnesses lie.
+    pub field: Arc<Field>,
+}
+
+/// The modifier of one component of a material.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ComponentModifier {
+    /// The material's own (`inherit`).
+    Own,
+    /// Another one; `None` is `void`.
+    Named(Option<ModifierId>),
 }
 
 /// `BSDF` and `aBSDF`.

@@ -1,7 +1,7 @@
 //! Whatever stands in a file, reading it ends, with a scene or with a message.
 
 use proptest::prelude::*;
-use sunpeak_scene::{LoadOptions, Picture, Scene, View};
+use sunpeak_scene::{Font, LoadOptions, Picture, Scene, View};
 
 /// Words that get past the first checks more often than random ones.
 fn word() -> impl Strategy<Value = String> {
@@ -16,6 +16,8 @@ fn word() -> impl Strategy<Value = String> {
         "aBSDF",
         "brightfunc",
         "glow",
+        "WGMDfunc",
+        "brighttext",
         "source",
         "skybr",
         "skybright.cal",
@@ -66,6 +68,15 @@ proptest! {
     #[test]
     fn any_words_are_read_or_refused(words in prop::collection::vec(word(), 0..60)) {
         let _ = Scene::parse(&words.join(" "), "t.rad", &LoadOptions::default());
+    }
+
+    #[test]
+    fn any_bytes_and_any_numbers_are_a_font_or_not(
+        bytes in prop::collection::vec(any::<u8>(), 0..80), numbers in prop::collection::vec(-1i32..300, 0..40)
+    ) {
+        let _ = Font::parse(&bytes, "t.fnt");
+        let words: Vec<_> = numbers.iter().map(i32::to_string).collect();
+        let _ = Font::parse(words.join(" ").as_bytes(), "t.fnt");
     }
 
     #[test]

@@ -71,6 +71,7 @@ fn scenes_load_or_say_what_is_missing() {
         "illum_trans2",
         "mirror",
         "gymbal",
+        "gymbal2",
         "mist",
         "prism1",
         "prism2",
@@ -85,7 +86,7 @@ fn scenes_load_or_say_what_is_missing() {
         load(&scenes, &["basic.mat", "chrome.mat", "gold.mat", &format!("{name}.rad")]).expect(name);
     }
     for (name, missing) in [
-        ("ballcompare", "mixtext"),
+        ("ballcompare", "font file: cannot find the file \"helvet.fnt\""),
         ("blinds", "the command \"pkgBSDF\" is not run"),
         ("glass_ill", "illum.cal"),
         ("porsches", "cannot find the file \"porsche.octf\""),

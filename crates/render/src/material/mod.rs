@@ -19,9 +19,9 @@ pub(crate) use glass::Glass;
 pub(crate) use prism::Prism;
 pub(crate) use smooth::{Smooth, SmoothSample, SmoothValue};
 pub(crate) use table::Table;
-pub(crate) use varying::{Mixture, Step, Varying, fault_of, tint_of};
+pub(crate) use varying::{Mixture, Step, Varying, fault_of, modulation_of, tint_of};
 pub(crate) use volume::{Air, Antimatter, Flight, Inside, Mist};
-pub(crate) use ward::WardMaterial;
+pub(crate) use ward::{Modifiers, WardMaterial, WgmdMaterial};
 
 use sunpeak_core::{Error, Rgb, Vec3};
 use sunpeak_scene::Orientation;
@@ -56,6 +56,8 @@ pub(crate) enum Material {
     Antimatter(Antimatter),
     /// `plasfunc`, `BRTDfunc` and their like.
     Function(Box<sunpeak_scene::FunctionMaterial>),
+    /// `WGMDfunc`.
+    Wgmd(WgmdMaterial),
     /// `prism1`, `prism2`.
     Prism(Prism),
     /// Any of these with patterns, textures or mixtures. Only the world can tell which, so that to the questions here it is nothing.
@@ -201,6 +203,7 @@ impl Material {
                 Scattering { mirrored: m.reflectance * arrival.tint, ..Scattering::BLACK }
             }
             Self::Function(m) => function::scatter(m, arrival),
+            Self::Wgmd(m) => m.scatter(arrival),
             Self::Prism(m) => m.scatter(arrival),
             Self::Mirror(_) | Self::Emitter(_) | Self::Varying(_) => Scattering::BLACK,
             Self::Mist(_) | Self::Antimatter(_) => Scattering { straight: Rgb::ONE, ..Scattering::BLACK },
@@ -217,6 +220,7 @@ impl Material {
             Self::Table(m) => m.straight(arrival, direct),
             Self::Mist(_) | Self::Antimatter(_) => Rgb::ONE,
             Self::Function(m) => function::straight(m, arrival),
+            Self::Wgmd(m) => m.straight(arrival),
             _ => Rgb::ZERO,
         }
     }
@@ -226,6 +230,7 @@ impl Material {
         match self {
             Self::Ward(m) => m.is_trans(),
             Self::Function(m) => (m.diffuse_transmission + m.transmission).max_element() > 0.0,
+            Self::Wgmd(m) => m.is_shade(),
             Self::Table(_) => true,
             _ => false,
         }
@@ -238,6 +243,7 @@ impl Material {
             Self::Glass(_) | Self::Dielectric(_) | Self::Mist(_) | Self::Antimatter(_) => true,
             Self::Ward(m) => m.is_trans(),
             Self::Function(m) => (m.diffuse_transmission + m.transmission).max_element() > 0.0,
+            Self::Wgmd(m) => m.is_trans(),
             Self::Prism(_) => true,
             Self::Table(m) => m.is_aperture,
             _ => false,

@@ -1,7 +1,7 @@
 //! The smooth part of a material at one point: what shadow rays are weighted with and directions are sampled from.
 
 use super::function::FunctionLobes;
-use super::{ashikhmin::AshikhminLobes, table::TableLobes, volume::Phase, ward::WardLobes};
+use super::{ashikhmin::AshikhminLobes, table::TableLobes, volume::Phase, ward::WardLobes, ward::WgmdLobes};
 use std::f64::consts::FRAC_1_PI;
 use sunpeak_core::{Frame, Rgb, Sampler, Vec3, warp};
 
@@ -46,6 +46,8 @@ pub(crate) enum Smooth<'w> {
     Sensor(Frame),
     /// Diffuse and Gaussian lobes.
     Ward(WardLobes),
+    /// Such lobes, each in a frame of its own.
+    Wgmd(Box<WgmdLobes>),
     /// Ashikhmin's and Shirley's lobes.
     Ashikhmin(AshikhminLobes),
     /// A table and diffuse lobes.
@@ -63,6 +65,7 @@ impl Smooth<'_> {
             Self::None => 0.0,
             Self::Sensor(_) => 1.0,
             Self::Ward(lobes) => lobes.albedo(),
+            Self::Wgmd(lobes) => lobes.albedo(),
             Self::Ashikhmin(lobes) => lobes.albedo(),
             Self::Table(lobes) => lobes.albedo(),
             Self::Function(lobes) => lobes.albedo(),
@@ -79,6 +82,7 @@ impl Smooth<'_> {
                 SmoothValue { diffuse: front, glossy: Rgb::ZERO }
             }
             Self::Ward(lobes) => lobes.evaluate(direction),
+            Self::Wgmd(lobes) => lobes.evaluate(direction),
             Self::Ashikhmin(lobes) => lobes.evaluate(direction),
             Self::Table(lobes) => lobes.evaluate(direction),
             Self::Function(lobes) => lobes.evaluate(direction),
@@ -106,6 +110,7 @@ impl Smooth<'_> {
     pub fn toward_source(&self, direction: Vec3, solid_angle: f64) -> SmoothValue {
         match self {
             Self::Ward(lobes) => lobes.evaluate(direction).scaled(lobes.source_factor(direction)),
+            Self::Wgmd(lobes) => lobes.toward_source(direction),
             Self::Table(lobes) => lobes.toward_source(direction, solid_angle),
             Self::Function(lobes) => lobes.toward_source(direction, solid_angle),
             _ => self.evaluate(direction),
@@ -116,6 +121,7 @@ impl Smooth<'_> {
     pub fn source_factor(&self, direction: Vec3) -> f64 {
         match self {
             Self::Ward(lobes) => lobes.source_factor(direction),
+            Self::Wgmd(lobes) => lobes.source_factor(direction),
             Self::Table(lobes) if lobes.has_source_rule() => 0.0,
             Self::Function(_) => 0.0,
             _ => 1.0,
@@ -124,13 +130,17 @@ impl Smooth<'_> {
 
     /// Are directions best drawn with a guide's help? Not where a table knows better.
     pub fn can_be_guided(&self) -> bool {
-        matches!(self, Self::Sensor(_) | Self::Ward(_) | Self::Ashikhmin(_) | Self::Function(_))
+        matches!(
+            self,
+            Self::Sensor(_) | Self::Ward(_) | Self::Wgmd(_) | Self::Ashikhmin(_) | Self::Function(_)
+        )
     }
 
     /// May sampled directions find light sources? Not where `toward_source` is a rule of its own.
     pub fn samples_find_sources(&self) -> bool {
         match self {
             Self::Table(lobes) => !lobes.has_source_rule(),
+            Self::Wgmd(lobes) => lobes.samples_find_sources(),
             Self::Function(_) => false,
             _ => true,
         }
@@ -142,6 +152,7 @@ impl Smooth<'_> {
             Self::None => 0.0,
             Self::Sensor(frame) => direction.dot(frame.z).max(0.0) * FRAC_1_PI,
             Self::Ward(lobes) => lobes.pdf(direction),
+            Self::Wgmd(lobes) => lobes.pdf(direction),
             Self::Ashikhmin(lobes) => lobes.pdf(direction),
             Self::Table(lobes) => lobes.pdf(direction),
             Self::Function(lobes) => lobes.pdf(direction),
@@ -161,6 +172,7 @@ impl Smooth<'_> {
                 (pdf > 0.0).then_some(SmoothSample { direction, weight, pdf, source_factor: 1.0 })
             }
             Self::Ward(lobes) => lobes.sample(sampler.next_1d(), sampler.next_2d()),
+            Self::Wgmd(lobes) => lobes.sample(sampler.next_1d(), sampler.next_2d()),
             Self::Ashikhmin(lobes) => lobes.sample(sampler.next_1d(), sampler.next_2d()),
             Self::Table(lobes) => lobes.sample(sampler.next_1d(), sampler.next_2d(), sampler.next_1d()),
             Self::Function(lobes) => lobes.sample(sampler.next_1d(), sampler.next_2d()),

@@ -7,7 +7,7 @@
 use super::{Arrival, MaterialId};
 use std::sync::Arc;
 use sunpeak_core::{Error, Rgb, Vec3};
-use sunpeak_scene::{Field, Pattern, RayState};
+use sunpeak_scene::{Field, Pattern, RayState, Weight};
 
 /// A chain of modifiers.
 #[derive(Clone, Debug, Default)]
@@ -32,7 +32,7 @@ pub(crate) enum Step {
 pub(crate) struct Mixture {
     pub fore: Varying,
     pub back: Varying,
-    pub weight: Arc<Field>,
+    pub weight: Weight,
 }
 
 /// What patterns and textures do at one point.
@@ -60,6 +60,13 @@ fn tint(pattern: &Pattern, ray: &RayState) -> Rgb {
     match pattern {
         Pattern::Sky(sky) => Rgb::splat(sky.brightness(ray.direction)),
         Pattern::Uniform(color) => *color,
+        Pattern::Text { text, fore, back } => {
+            if text.contains(ray.point) {
+                *fore
+            } else {
+                *back
+            }
+        }
         Pattern::Bright(field) => field.values(ray).map_or(Rgb::ONE, |[value]: [f64; 1]| Rgb::splat(value)),
         Pattern::Color(field) => {
             field.values(ray).map_or(Rgb::ONE, |values: [f64; 3]| Rgb::from_array(values))
@@ -74,15 +81,20 @@ fn tint(pattern: &Pattern, ray: &RayState) -> Rgb {
 fn field_of(pattern: &Pattern) -> Option<&Arc<Field>> {
     match pattern {
         Pattern::Bright(field) | Pattern::Color(field) | Pattern::Spectral { field, .. } => Some(field),
-        Pattern::Sky(_) | Pattern::Uniform(_) => None,
+        Pattern::Sky(_) | Pattern::Uniform(_) | Pattern::Text { .. } => None,
     }
 }
 
 /// What steps without materials multiply a colour with.
 pub(crate) fn tint_of(steps: &[Step], ray: &RayState) -> Rgb {
+    modulation_of(steps, ray).tint
+}
+
+/// What steps without materials do together.
+pub(crate) fn modulation_of(steps: &[Step], ray: &RayState) -> Modulation {
     let mut sum = Modulation::NONE;
     steps.iter().for_each(|step| step.add_to(&mut sum, ray));
-    sum.tint
+    sum
 }
 
 /// What an evaluation has found to be wrong with one of these.
@@ -90,7 +102,7 @@ pub(crate) fn fault_of(steps: &[Step]) -> Option<Error> {
     steps.iter().find_map(|step| match step {
         Step::Pattern(pattern) => field_of(pattern).and_then(|field| field.fault()),
         Step::Texture(field) => field.fault(),
-        Step::Mixture(m) => m.weight.fault().or_else(|| m.fore.fault()).or_else(|| m.back.fault()),
+        Step::Mixture(m) => m.fault().or_else(|| m.fore.fault()).or_else(|| m.back.fault()),
     })
 }
 
@@ -191,11 +203,7 @@ impl Step {
             }
             Self::Mixture(mixture) => {
                 let Some(share) = mixture.share(ray) else { return };
-                let part = |varying: &Varying| {
-                    let mut part = Modulation::NONE;
-                    varying.steps.iter().for_each(|step| step.add_to(&mut part, ray));
-                    part
-                };
+                let part = |varying: &Varying| modulation_of(&varying.steps, ray);
                 let mixed = part(&mixture.fore).mixed(part(&mixture.back), share);
                 sum.tint *= mixed.tint;
                 sum.bend += mixed.bend;
@@ -211,7 +219,18 @@ impl Mixture {
     }
 
     fn share(&self, ray: &RayState) -> Option<f64> {
-        self.weight.values(ray).map(|[share]: [f64; 1]| share.clamp(0.0, 1.0))
+        match &self.weight {
+            Weight::Field(field) => field.values(ray).map(|[share]: [f64; 1]| share.clamp(0.0, 1.0)),
+            Weight::Text(text) => Some(f64::from(u8::from(text.contains(ray.point)))),
+        }
+    }
+
+    /// What an evaluation of the weight has found to be wrong.
+    fn fault(&self) -> Option<Error> {
+        match &self.weight {
+            Weight::Field(field) => field.fault(),
+            Weight::Text(_) => None,
+        }
     }
 }
 

@@ -11,12 +11,14 @@
 //! The surface is two-sided: it is turned to face the ray.
 
 mod transmission;
+mod wgmd;
 
 use super::{Arrival, Scattering, Smooth, SmoothValue, fault_of_orientation, smooth::SmoothSample};
 use std::f64::consts::{FRAC_1_PI, PI};
 use sunpeak_core::{Error, Frame, Rgb, Vec3, luminance, warp};
 use sunpeak_scene::Orientation;
 use transmission::Transmission;
+pub(crate) use wgmd::{Modifiers, WgmdLobes, WgmdMaterial};
 
 /// Smallest specularity to which the Fresnel approximation is applied (Radiance, `FRESTHRESH`: just below 1.8 %).
 const FRESNEL_THRESHOLD: f64 = 0.017999;
@@ -30,6 +32,18 @@ const SMALLEST_COSINE: f64 = 1e-3;
 /// Radiance's estimate of what Fresnel's law adds to the specularity at this cosine: 0 at normal incidence, 1 at grazing.
 fn fresnel_rise(cosine: f64) -> f64 {
     (-5.85 * cosine).exp() - 0.002_879_899_16
+}
+
+/// x along the orientation, z the normal; and the roughnesses. Where the orientation runs along the normal there is only
+/// a mean roughness, as in Radiance.
+fn oriented(normal: Vec3, orientation: Vec3, alpha: [f64; 2]) -> (Frame, [f64; 2]) {
+    match normal.cross(orientation).try_normalize() {
+        Some(y) => (Frame { x: y.cross(normal), y, z: normal }, alpha),
+        None => {
+            let mean = (0.5 * (alpha[0].powi(2) + alpha[1].powi(2))).sqrt();
+            (Frame::from_normal(normal), [mean; 2])
+        }
+    }
 }
 
 /// The three materials in one.
@@ -117,18 +131,10 @@ impl WardMaterial {
         !self.is_rough() && self.specularity >= FRESNEL_THRESHOLD
     }
 
-    /// x along the orientation, z the normal; and the roughnesses. Where the orientation runs along the normal there is only
-    /// a mean roughness, as in Radiance.
     fn frame(&self, arrival: &Arrival) -> (Frame, [f64; 2]) {
         let normal = arrival.facing_normal();
         let Some(orientation) = &self.orientation else { return (Frame::from_normal(normal), self.alpha) };
-        match normal.cross(arrival.orientation(orientation)).try_normalize() {
-            Some(y) => (Frame { x: y.cross(normal), y, z: normal }, self.alpha),
-            None => {
-                let mean = (0.5 * (self.alpha[0].powi(2) + self.alpha[1].powi(2))).sqrt();
-                (Frame::from_normal(normal), [mean; 2])
-            }
-        }
+        oriented(normal, arrival.orientation(orientation), self.alpha)
     }
 
     /// `tint`: patterns multiply the colour.
@@ -160,22 +166,20 @@ impl WardMaterial {
 
     pub fn scatter(&self, arrival: &Arrival) -> Scattering<'static> {
         let (frame, alpha) = self.frame(arrival);
-        let mut w_in = frame.to_local(-arrival.direction);
-        w_in.z = w_in.z.max(SMALLEST_COSINE);
-        let w_in = w_in.normalize();
+        let black = WardLobes::black(frame, arrival.direction);
+        let w_in = black.w_in;
         let shares = self.shares(w_in.z, arrival.tint);
         let is_rough = self.is_rough();
         let rough = |share: Rgb| if is_rough { share } else { Rgb::ZERO };
         let delta = |share: Rgb| if is_rough { Rgb::ZERO } else { share };
         let bound = self.transmission_bound.as_ref().map_or(1.0, |bound| bound.at(w_in));
         let lobes = WardLobes {
-            frame,
-            w_in,
             diffuse: [shares.diffuse_reflection, shares.diffuse_transmission],
             reflection: rough(shares.specular),
             transmission: rough(shares.specular_transmission) * bound,
             alpha,
             is_fresnel: self.is_fresnel(),
+            ..black
         };
         let smooth = if lobes.albedo() > 0.0 { Smooth::Ward(lobes) } else { Smooth::None };
         Scattering {
@@ -204,6 +208,21 @@ pub(crate) struct WardLobes {
 }
 
 impl WardLobes {
+    /// Nothing is scattered of a ray in this direction, z of the frame on its side.
+    fn black(frame: Frame, direction: Vec3) -> Self {
+        let mut w_in = frame.to_local(-direction);
+        w_in.z = w_in.z.max(SMALLEST_COSINE);
+        Self {
+            frame,
+            w_in: w_in.normalize(),
+            diffuse: [Rgb::ZERO; 2],
+            reflection: Rgb::ZERO,
+            transmission: Rgb::ZERO,
+            alpha: [0.0; 2],
+            is_fresnel: false,
+        }
+    }
+
     /// Luminous weight of each lobe: diffuse reflection and transmission, rough reflection and transmission.
     fn weights(&self) -> [f64; 4] {
         [self.diffuse[0], self.diffuse[1], self.reflection, self.transmission].map(luminance)

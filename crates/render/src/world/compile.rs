@@ -7,13 +7,15 @@ use crate::guide::Guide;
 use crate::light::{Distant, DistantSources, Lamp, LampShape, Lamps};
 use crate::material::{
     Alternate, Antimatter, Ashikhmin, Dielectric, Emitter, EmitterKind, Glass, Material, MaterialId, Mirror,
-    Mist, Mixture, Prism, Step, Table, Varying, WardMaterial,
+    Mist, Mixture, Modifiers, Prism, Step, Table, Varying, WardMaterial, WgmdMaterial,
 };
 use crate::shapes::{Analytic, Cone, MeshSurface, Polygon, Ring, Sphere, Triangle};
 use std::{collections::HashMap, path::Path, sync::Arc};
 use sunpeak_bsdf::{Bsdf, PeakRule};
 use sunpeak_core::{Error, Frame, Location, Result, Vec3};
-use sunpeak_scene::{BsdfMaterial, Material as Said, Mesh, ModifierId, ModifierKind, Scene, Shape, Surface};
+use sunpeak_scene::{
+    BsdfMaterial, ComponentModifier, Material as Said, Mesh, ModifierId, ModifierKind, Scene, Shape, Surface,
+};
 
 /// Modifiers may name each other this deep; more is a circle.
 const MAX_MODIFIER_DEPTH: usize = 100;
@@ -298,6 +300,8 @@ impl<'s> Compiler<'s> {
     fn varying(&mut self, id: ModifierId, user: &Location, depth: usize) -> Result<(Varying, bool)> {
         let mut varying = Varying::default();
         let mut said: Option<(&'s Said, &'s Location)> = None;
+        // Patterns and textures before the material.
+        let mut before = 0;
         let mut next = Some(id);
         let mut steps = 0;
         while let Some(id) = next {
@@ -316,7 +320,8 @@ impl<'s> Compiler<'s> {
                     varying.steps.push(Step::Mixture(Box::new(mixture)));
                 }
                 ModifierKind::Material(material) if said.is_none() => {
-                    said = Some((material, &modifier.location))
+                    said = Some((material, &modifier.location));
+                    before = varying.steps.len();
                 }
                 ModifierKind::Material(_) => {
                     let message = format!(
@@ -335,9 +340,13 @@ impl<'s> Compiler<'s> {
         }
         let emitter = self.compile_emitter(said, &varying.steps, location, depth)?;
         let is_emitter = emitter.is_some();
-        let material = match emitter {
-            Some(emitter) => Material::Emitter(emitter),
-            None => self.compile_material(said, location, depth)?,
+        let material = match (emitter, said) {
+            (Some(emitter), _) => Material::Emitter(emitter),
+            (None, Said::Wgmd(wgmd)) => {
+                let own = varying.steps.split_off(before);
+                Material::Wgmd(self.compile_wgmd(wgmd, own, location, depth)?)
+            }
+            (None, _) => self.compile_material(said, location, depth)?,
         };
         varying.material = Some(self.push(material));
         Ok((varying, is_emitter))
@@ -405,10 +414,35 @@ impl<'s> Compiler<'s> {
             Said::Bsdf(bsdf) => Material::Table(self.compile_table(bsdf)?),
             Said::Function(function) => Material::Function(function.clone()),
             Said::Prism { field, ways } => Material::Prism(Prism { field: field.clone(), ways: *ways }),
-            Said::Light(_) | Said::Illum { .. } | Said::Glow { .. } | Said::Spotlight { .. } => {
-                return Err(Error::input(location.clone(), "an emitter that is none"));
+            Said::Light(_)
+            | Said::Illum { .. }
+            | Said::Glow { .. }
+            | Said::Spotlight { .. }
+            | Said::Wgmd(_) => {
+                return Err(Error::input(location.clone(), "a material that is compiled elsewhere"));
             }
         })
+    }
+
+    /// What stands before the material modifies all of it, its `own` modifiers only the components that say so.
+    fn compile_wgmd(
+        &mut self,
+        said: &sunpeak_scene::WgmdMaterial,
+        own: Vec<Step>,
+        location: &Location,
+        depth: usize,
+    ) -> Result<WgmdMaterial> {
+        let mut steps = |modifier: ComponentModifier| match modifier {
+            ComponentModifier::Own => Ok(None),
+            ComponentModifier::Named(id) => Ok(Some(self.part(id, location, depth + 1)?.steps)),
+        };
+        let modifiers = Modifiers {
+            reflection: steps(said.reflection_modifier)?,
+            transmission: steps(said.transmission_modifier)?,
+            diffuse_transmission: steps(said.diffuse_transmission_modifier)?,
+            own,
+        };
+        Ok(WgmdMaterial::new(said, modifiers))
     }
 
     fn compile_emitter(

@@ -1,9 +1,9 @@
-//! Function files and data files, each read once.
+//! Function files, data files, pictures and fonts, each read once.
 
 use super::ray::ray_definitions;
 use super::{DataArray, Field, FieldFrame};
 use crate::files::{LoadOptions, read};
-use crate::{Picture, raw::Primitive};
+use crate::{Picture, raw::Primitive, text::Font};
 use std::{collections::HashMap, path::Path, path::PathBuf, sync::Arc, sync::OnceLock};
 use sunpeak_cal::Definitions;
 use sunpeak_core::{Error, Transform};
@@ -26,6 +26,7 @@ pub(crate) struct FunctionFiles {
     definitions: Definitions,
     data: HashMap<PathBuf, Arc<DataArray>>,
     pictures: HashMap<PathBuf, [Arc<DataArray>; 3]>,
+    fonts: HashMap<PathBuf, Arc<Font>>,
 }
 
 /// Where to look for files of a primitive.
@@ -45,7 +46,7 @@ impl Places<'_> {
         })
     }
 
-    fn read(&self, name: &str) -> Result<(PathBuf, Vec<u8>), String> {
+    pub fn read(&self, name: &str) -> Result<(PathBuf, Vec<u8>), String> {
         let path = self.find(name)?;
         let bytes = read(&path).map_err(|error| error.to_string())?;
         Ok((path, bytes))
@@ -54,7 +55,12 @@ impl Places<'_> {
 
 impl FunctionFiles {
     pub fn new() -> Self {
-        Self { definitions: ray_definitions(), data: HashMap::new(), pictures: HashMap::new() }
+        Self {
+            definitions: ray_definitions(),
+            data: HashMap::new(),
+            pictures: HashMap::new(),
+            fonts: HashMap::new(),
+        }
     }
 
     /// Number of parameters of a function that a primitive with this function file names.
@@ -114,6 +120,19 @@ impl FunctionFiles {
         let array = Arc::new(array);
         self.data.insert(path, array.clone());
         Ok(array)
+    }
+
+    /// A font.
+    pub fn font(&mut self, places: Places, name: &str) -> Result<Arc<Font>, String> {
+        let path = places.find(name).map_err(|message| format!("font file: {message}"))?;
+        if let Some(known) = self.fonts.get(&path) {
+            return Ok(known.clone());
+        }
+        let bytes = read(&path).map_err(|error| error.to_string())?;
+        let font = Font::parse(&bytes, &path.to_string_lossy()).map_err(|error| error.to_string())?;
+        let font = Arc::new(font);
+        self.fonts.insert(path, font.clone());
+        Ok(font)
     }
 
     /// A picture, one array for each channel.

@@ -104,7 +104,7 @@ fn scatterer(primitive: &Primitive, material: FunctionMaterial) -> Result<Functi
     })
 }
 
-fn check_reals(primitive: &Primitive, count: usize, form: &str) -> Result<(), String> {
+pub(super) fn check_reals(primitive: &Primitive, count: usize, form: &str) -> Result<(), String> {
     let found = primitive.reals.len();
     if found >= count {
         return Ok(());

@@ -36,6 +36,7 @@ impl Interpreter<'_> {
                 Material::Glow { radiance: triple(&primitive.reals, 0), max_radius: primitive.reals[3] }
             }
             "spotlight" => spotlight(primitive)?,
+            "WGMDfunc" => self.wgmd(primitive)?,
             "BSDF" | "aBSDF" => Material::Bsdf(bsdf::material(self, primitive)?),
             _ => {
                 if let Some(material) = self.function_material(primitive)? {
@@ -87,7 +88,12 @@ impl Interpreter<'_> {
     }
 
     /// A modifier that an argument names; `what` says what for.
-    fn named(&self, primitive: &Primitive, name: &str, what: &str) -> Result<Option<ModifierId>, Unusable> {
+    pub(super) fn named(
+        &self,
+        primitive: &Primitive,
+        name: &str,
+        what: &str,
+    ) -> Result<Option<ModifierId>, Unusable> {
         match self.parent(primitive, name) {
             Ok(Reference::Void) => Ok(None),
             Ok(Reference::Named(Named::Modifier(id))) => Ok(Some(id)),

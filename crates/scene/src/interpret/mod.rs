@@ -9,7 +9,9 @@ mod orientation;
 mod patterns;
 mod sky;
 mod surfaces;
+mod text;
 mod volumes;
+mod wgmd;
 
 use crate::{
     LoadOptions, Modifier, ModifierId, ModifierKind, Scene, Surface,

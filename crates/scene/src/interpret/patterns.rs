@@ -4,7 +4,7 @@ use super::args::title;
 use super::{Interpreter, Unusable, sky};
 use crate::command::trailing_transform;
 use crate::field::{DataArray, Field, FieldPlan, MAX_DIMENSIONS, Places, Spectrum};
-use crate::{ModifierKind, Pattern, raw::Primitive};
+use crate::{ModifierKind, Pattern, Weight, raw::Primitive};
 use std::sync::Arc;
 use sunpeak_core::Transform;
 
@@ -24,15 +24,20 @@ impl Interpreter<'_> {
             "brightdata" => pattern(Pattern::Bright(self.data(primitive, 0, 1, 1)?)),
             "colordata" => pattern(Pattern::Color(self.data(primitive, 0, 3, 3)?)),
             "colorpict" => pattern(Pattern::Color(self.picture(primitive, 0, 3)?)),
+            "brighttext" => pattern(self.text_pattern(primitive, 1)?),
+            "colortext" => pattern(self.text_pattern(primitive, 3)?),
             "spectrum" => pattern(Pattern::Uniform(spectrum(primitive)?)),
             "specfile" => pattern(Pattern::Uniform(self.spectrum_file(primitive)?)),
             "specfunc" => pattern(self.spectral_function(primitive)?),
             "specdata" => pattern(self.spectral_data(primitive)?),
             "texfunc" => ModifierKind::Texture(self.function(primitive, &[0, 1, 2], 3)?),
             "texdata" => ModifierKind::Texture(self.data(primitive, 0, 3, 3)?),
-            "mixfunc" => self.mixture(primitive, |this| this.function(primitive, &[2], 3))?,
-            "mixdata" => self.mixture(primitive, |this| this.data(primitive, 2, 1, 1))?,
-            "mixpict" => self.mixture(primitive, |this| this.picture(primitive, 2, 1))?,
+            "mixfunc" => {
+                self.mixture(primitive, |this| this.function(primitive, &[2], 3).map(Weight::Field))?
+            }
+            "mixdata" => self.mixture(primitive, |this| this.data(primitive, 2, 1, 1).map(Weight::Field))?,
+            "mixpict" => self.mixture(primitive, |this| this.picture(primitive, 2, 1).map(Weight::Field))?,
+            "mixtext" => self.mixture(primitive, |this| this.text_mask(primitive).map(Weight::Text))?,
             _ => return Ok(None),
         };
         Ok(Some(kind))
@@ -188,7 +193,7 @@ impl Interpreter<'_> {
     fn mixture(
         &mut self,
         primitive: &Primitive,
-        weight: impl FnOnce(&mut Self) -> Result<Arc<Field>, String>,
+        weight: impl FnOnce(&mut Self) -> Result<Weight, String>,
     ) -> Result<ModifierKind, Unusable> {
         at_least(primitive, 2, "a foreground and a background modifier")?;
         let [fore, back] = [0, 1].map(|i| self.mixed(primitive, &primitive.strings[i]));

@@ -146,6 +146,11 @@ fn neighbours(position: f64, count: usize) -> (usize, usize, f64) {
     (low as usize, high as usize, (position - low).clamp(0.0, 1.0))
 }
 
+/// The factor of [`Bound::at`] for roughnesses of one point alone.
+pub(super) fn bound_at(w_in: Vec3, alpha: [f64; 2]) -> f64 {
+    1.0 / flux(alpha, w_in.z, w_in.y.atan2(w_in.x)).max(1.0)
+}
+
 /// What the lobe gives out of a unit of flux.
 fn flux(alpha: [f64; 2], cosine: f64, azimuth: f64) -> f64 {
     const SAMPLES: usize = 40;
