@@ -249,7 +249,8 @@ def compare(comparison: Comparison, paths: int, runs: int, samples: int) -> dict
         mine = without_suns(ours)
         result |= {"ours": blocks(mine).round(4).tolist(), "ours_s": round(time.monotonic() - started, 1)}
     except (sp.InputError, OSError, ValueError) as error:
-        result["sunpeak"] = str(error)
+        # Without the folders of this run.
+        result["sunpeak"] = str(error).partition("; looked for")[0]
     try:
         started = time.monotonic()
         pictures = comparison.theirs(paths, runs)
