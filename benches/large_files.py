@@ -28,13 +28,15 @@ LIMIT_BYTES = 6.0
 OURS = "import sunpeak as sp; load = sp.Bsdf.load"
 THEIRS = "import pyradiance.bsdf as library; load = library.load_file"
 
-# Prints seconds, seconds of all processors together, and how much memory came with the file [bytes].
+# Prints seconds, seconds of all processors together, and how much memory came with the file [bytes] beside what any
+# file takes: code, threads, buffers.
 CHILD = """
 import json, sys, time
 {imports}
 def resident():
     line = next(line for line in open("/proc/self/status") if line.startswith("VmRSS"))
     return 1024 * int(line.split()[1])
+small = load(sys.argv[2])
 before, start, busy = resident(), time.perf_counter(), time.process_time()
 bsdf = load(sys.argv[1])
 print(json.dumps([time.perf_counter() - start, time.process_time() - busy, resident() - before]))
@@ -49,9 +51,9 @@ class Load(NamedTuple):
     memory: int
 
 
-def load(path: Path, imports: str, cache: Path) -> Load:
-    """Load a file in a process of its own."""
-    command = [sys.executable, "-c", CHILD.format(imports=imports), path]
+def load(path: Path, small: Path, imports: str, cache: Path) -> Load:
+    """Load a file in a process of its own, after a small one."""
+    command = [sys.executable, "-c", CHILD.format(imports=imports), path, small]
     env = os.environ | {"SUNPEAK_CACHE": str(cache)}
     return Load(*json.loads(subprocess.run(command, env=env, capture_output=True, check=True).stdout))
 
@@ -72,10 +74,12 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as temporary:
         path, cache = Path(temporary, "large.xml"), Path(temporary, "cache")
         sp.Fabric().write(path, BASIS)
+        small = Path(temporary, "small.xml")
+        sp.Fabric().write(small, "t4-256")
         values = values_in(path)
         print(f"\n{BASIS}, both sides: {path.stat().st_size / 1e6:.0f} MB, {values / 1e6:.1f} million values")
-        first, second = (load(path, OURS, cache) for _ in range(2))
-        theirs = load(path, THEIRS, cache) if importlib.util.find_spec("pyradiance") else None
+        first, second = (load(path, small, OURS, cache) for _ in range(2))
+        theirs = load(path, small, THEIRS, cache) if importlib.util.find_spec("pyradiance") else None
         heading("loading", "s", "Radiance's library")
         row("first time", first.wall_s, theirs and theirs.wall_s)
         row("first time, all processors", first.processors_s, theirs and theirs.processors_s)
