@@ -4,7 +4,7 @@ World axes are Radiance's: x east, y north, z up, in metres. The facade lies in 
 """
 
 from sunpeak.rooms import Glazing, Room
-from sunpeak.rooms.surfaces import box, glass, inside, plastic, polygon, upright
+from sunpeak.rooms.surfaces import box, glass, inside, panes, plastic, polygon, upright
 from sunpeak.skies import SunPosition
 
 X_M = (-2.0, 2.0)
@@ -31,7 +31,7 @@ def room_text() -> str:
         inside(X_M, (min(PANES_Y_M) - 0.01, DEPTH_M), HEIGHT_M),
         polygon("table_top", "table", (-0.8, 0.5, 0.74), (0.8, 0.5, 0.74), (0.8, 1.3, 0.74), (-0.8, 1.3, 0.74)),
         box("plaster", "neighbour", (3, -34, -0.5), (12, -26, 10.5)),
-        *(upright("clear_glass", f"pane_{n}", y, X_M, (0, HEIGHT_M)) for n, y in enumerate(PANES_Y_M, start=1)),
+        panes(PANES_Y_M, X_M, (0, HEIGHT_M)),
     ]
     return "".join(parts)
 

@@ -5,7 +5,7 @@ chosen once, so that the numbers without and with peak extraction lie where Tabl
 """
 
 from sunpeak.rooms.room import Glazing, Room
-from sunpeak.rooms.surfaces import glass, inside, plastic, reveals, upright
+from sunpeak.rooms.surfaces import glass, inside, panes, plastic, reveals, upright
 from sunpeak.skies import SunPosition
 
 X_M = (-2.0, 2.0)
@@ -30,7 +30,7 @@ def room_text() -> str:
         inside(X_M, (0.0, DEPTH_M), HEIGHT_M),
         reveals((min(PANES_Y_M) - 0.01, 0.0), X_M, (SILL_M, HEIGHT_M)),
         upright("wall", "parapet", 0.0, X_M, (0, SILL_M)),
-        *(upright("clear_glass", f"pane_{n}", y, X_M, (SILL_M, HEIGHT_M)) for n, y in enumerate(PANES_Y_M, start=1)),
+        panes(PANES_Y_M, X_M, (SILL_M, HEIGHT_M)),
     ]
     return "".join(parts)
 

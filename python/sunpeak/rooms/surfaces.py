@@ -35,6 +35,11 @@ def upright(material: str, name: str, y: float, x: tuple[float, float], z: tuple
     return polygon(material, name, (x[1], y, z[0]), (x[0], y, z[0]), (x[0], y, z[1]), (x[1], y, z[1]))
 
 
+def panes(y_m: tuple[float, ...], x: tuple[float, float], z: tuple[float, float]) -> str:
+    """Write panes of clear glass, one behind the other."""
+    return "".join(upright("clear_glass", f"pane_{n}", y, x, z) for n, y in enumerate(y_m, start=1))
+
+
 def inside(x: tuple[float, float], y: tuple[float, float], height_m: float) -> str:
     """Write floor, ceiling and the west, east and north walls of a room, which face its inside."""
     (x0, x1), (y0, y1), z1 = x, y, height_m
