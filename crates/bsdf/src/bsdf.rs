@@ -1,6 +1,7 @@
 //! One product: front and back, reflection and transmission, with the Radiance library's meaning of sides.
 
 use crate::{
+    backlit::Backlit,
     distribution::Distribution,
     peak::{PeakRule, reference},
     proposal::{Oriented, Proposal},
@@ -198,6 +199,24 @@ impl Bsdf {
     /// Hemispherical reflectance or transmittance [-] of what [`Self::evaluate_smooth`] gives.
     pub fn hemispherical_smooth(&self, w_in: Vec3, mode: Mode, rule: PeakRule) -> Rgb {
         self.met(w_in, mode, rule).map_or(Rgb::ZERO, |lobe| lobe.hemispherical())
+    }
+
+    /// What a side of the product gives off that a far field lights from the other side: the front for `at_front`. `light` is
+    /// the field's radiance in a direction of the BSDF's frame. What `rule` splits off is left out. `None` where nothing comes
+    /// through.
+    pub fn backlit(
+        &self,
+        at_front: bool,
+        rule: PeakRule,
+        light: impl Fn(Vec3) -> Rgb,
+    ) -> Option<Backlit> {
+        let side = if at_front { 1.0 } else { -1.0 };
+        let oriented = self.distribution(Vec3::new(0.0, 0.0, side), Mode::Transmission)?;
+        let light_at = |p_out: DVec2| {
+            let height = (1.0 - p_out.length_squared()).max(0.0).sqrt();
+            light(p_out.extend(-side * height))
+        };
+        Some(Backlit::new(oriented, rule == PeakRule::Split, light_at))
     }
 
     /// Sample the smooth part, reflection and transmission together, in proportion to luminous f |cos|; `None` if there is

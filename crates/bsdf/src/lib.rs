@@ -12,6 +12,7 @@
 //! # Ok::<(), sunpeak_core::Error>(())
 //! ```
 
+mod backlit;
 pub mod basis;
 mod bsdf;
 mod cache;
@@ -31,6 +32,7 @@ pub mod tree;
 pub mod xml;
 mod xml_write;
 
+pub use backlit::Backlit;
 pub use bsdf::{Bsdf, Mode, Sample, Sides};
 pub use cache::Cache;
 pub use distribution::Distribution;
