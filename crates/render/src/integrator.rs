@@ -7,11 +7,14 @@
 mod direct;
 mod path;
 
+use crate::accel::Hit;
+use crate::backlight::Backlight;
 use crate::exact_sun::ExactSuns;
 use crate::guide::Guide;
+use crate::light::power_heuristic;
 use crate::material::{Air, Arrival, Flight, Material, Scattering, Smooth, SmoothSample};
 use crate::shapes::Ray;
-use crate::world::{Facing, Object, Seen};
+use crate::world::{Facing, Seen};
 use crate::{RenderOptions, World};
 use path::{Departure, Path};
 use sunpeak_core::{Frame, Rgb, Sampler, Vec3, luminance};
@@ -67,7 +70,18 @@ impl Integrator<'_> {
         direct + self.trace(path, sampler)
     }
 
-    fn trace(&self, mut path: Path, sampler: &mut Sampler) -> Rgb {
+    fn trace(&self, path: Path, sampler: &mut Sampler) -> Rgb {
+        let mut branches = Vec::new();
+        let mut sum = self.follow(path, &mut branches, sampler);
+        while let Some(branch) = branches.pop() {
+            sum += self.follow(branch, &mut branches, sampler);
+        }
+        sum
+    }
+
+    /// Follow a path to its end; where the camera sees straight through a surface that does something else too, the straight chain
+    /// is put among the `branches`.
+    fn follow(&self, mut path: Path, branches: &mut Vec<Path>, sampler: &mut Sampler) -> Rgb {
         let mut sum = Rgb::ZERO;
         while path.events <= self.limits.max_depth {
             let hit = self.world.accel.closest(&path.ray, path.reach);
@@ -103,11 +117,14 @@ impl Integrator<'_> {
                 }
                 Seen::Surface(material) => {
                     path.absorb(material, &arrival, hit.t);
-                    let met = Met::new(object, material, arrival, path.is_view());
+                    let mut met = Met::new(self.world, &hit, material, arrival, path.is_view());
+                    branches.extend(met.split_straight(&path));
                     if met.smooth_share() > 0.0 {
                         sum += path.throughput * self.direct(&path, &met, sampler);
                     }
-                    if !self.go_on(&mut path, &met, sampler) || !survives(&mut path, sampler) {
+                    let goes_on = self.go_on(&mut path, &met, sampler);
+                    sum -= path.known();
+                    if !goes_on || !survives(&mut path, sampler) {
                         return sum + path.ambient;
                     }
                 }
@@ -125,8 +142,7 @@ impl Integrator<'_> {
         }
         let choice = sampler.next_1d() * whole;
         if choice < straight {
-            path.go_straight(met.straight_origin(), met.scattering.straight * (whole / straight));
-            path.is_past_peak |= matches!(met.material, Some(Material::Table(_)));
+            met.go_straight(path, whole / straight);
         } else if choice < straight + mirrored {
             path.mirror(&met.arrival, met.scattering.mirrored * (whole / mirrored), met.is_flat);
         } else if choice < straight + mirrored + refracted {
@@ -149,6 +165,7 @@ impl Integrator<'_> {
         }
         let share = met.smooth_share();
         let mut weight = sample.weight.total();
+        let mut glossy = sample.weight.glossy;
         if weight == Rgb::ZERO {
             return false;
         }
@@ -161,17 +178,30 @@ impl Integrator<'_> {
                     path.throughput * sample.weight.diffuse / (diffuse * share) * self.limits.ambient;
                 return false;
             }
-            weight = if is_diffuse {
-                sample.weight.diffuse / diffuse
+            (weight, glossy) = if is_diffuse {
+                (sample.weight.diffuse / diffuse, Rgb::ZERO)
             } else {
-                sample.weight.glossy / (1.0 - diffuse)
+                (glossy / (1.0 - diffuse), glossy / (1.0 - diffuse))
             };
             path.bounces += u32::from(is_diffuse);
         }
         let point = met.arrival.point + met.scattering.smooth.offset(sample.direction);
         let departure = Departure { point, pdf: sample.pdf * share, source_factor: sample.source_factor };
+        if let Some(backlight) = met.backlight {
+            path.known = self.known_light(backlight, &sample, share) * path.throughput * glossy / share;
+        }
         path.depart(departure, sample.direction, weight / share);
         true
+    }
+
+    /// What the path will find of the far field, and what the shade's radiance holds already.
+    fn known_light(&self, backlight: &Backlight, sample: &SmoothSample, share: f64) -> Rgb {
+        let sky = self.world.distant.dome_radiance(sample.direction);
+        let field = backlight.field(self.world, sample.direction, sky);
+        if field == Rgb::ZERO {
+            return field;
+        }
+        field * power_heuristic(sample.pdf * share, self.world.distant.dome_pdf(sample.direction))
     }
 
     fn draw(&self, met: &Met, sampler: &mut Sampler) -> Option<SmoothSample> {
@@ -204,23 +234,47 @@ struct Met<'w> {
     scattering: Scattering<'w>,
     /// Luminous weights of the ways on: straight, mirrored, refracted, smooth.
     shares: [f64; 4],
+    /// The far field behind it.
+    backlight: Option<&'w Backlight>,
 }
 
 impl<'w> Met<'w> {
-    fn new(object: &Object, material: &'w Material, arrival: Arrival, view: bool) -> Self {
+    fn new(world: &'w World, hit: &Hit, material: &'w Material, arrival: Arrival, view: bool) -> Self {
+        let object = world.object(hit);
         let scattering = material.scatter(&arrival, view);
         let refracted = scattering.refracted.iter().flatten().map(|(_, share)| luminance(*share)).sum();
         let [straight, mirrored] = [scattering.straight, scattering.mirrored].map(luminance);
         let shares = [straight, mirrored, refracted, scattering.smooth.albedo()];
         let is_flat = matches!(object.facing, Facing::Flat(_));
-        Self { arrival, material: Some(material), is_flat, scattering, shares }
+        let backlight = match scattering.smooth {
+            Smooth::Table(_) => world.backlights.of(hit.object, arrival.at_front()),
+            _ => None,
+        };
+        Self { arrival, material: Some(material), is_flat, scattering, shares, backlight }
+    }
+
+    /// The straight chain of a path from the camera that something else happens to as well: it is not left to chance.
+    fn split_straight(&mut self, path: &Path) -> Option<Path> {
+        let [straight, rest @ ..] = &mut self.shares;
+        if !path.is_view() || *straight <= 0.0 || *rest == [0.0; 3] {
+            return None;
+        }
+        *straight = 0.0;
+        let mut chain = *path;
+        self.go_straight(&mut chain, 1.0);
+        Some(chain)
+    }
+
+    fn go_straight(&self, path: &mut Path, weight: f64) {
+        path.go_straight(self.straight_origin(), self.scattering.straight * weight);
+        path.is_past_peak |= matches!(self.material, Some(Material::Table(_)));
     }
 
     /// A point of the air at which a ray of this direction is scattered.
     fn air(air: &Air, point: Vec3, direction: Vec3) -> Self {
         let scattering = Scattering { smooth: Smooth::Phase(air.phase(direction)), ..Scattering::BLACK };
         let arrival = Arrival::new(point, -direction, direction);
-        Self { arrival, material: None, is_flat: true, scattering, shares: [0.0, 0.0, 0.0, 1.0] }
+        Self { arrival, material: None, is_flat: true, scattering, shares: [0.0, 0.0, 0.0, 1.0], backlight: None }
     }
 
     /// Where light that is scattered starts: at the surface, and beyond what a table with thickness stands for.
@@ -245,7 +299,7 @@ impl<'w> Met<'w> {
         let arrival = Arrival::new(point, normal, -normal);
         let scattering =
             Scattering { smooth: Smooth::Sensor(Frame::from_normal(normal)), ..Scattering::BLACK };
-        Self { arrival, material: None, is_flat: true, scattering, shares: [0.0, 0.0, 0.0, 1.0] }
+        Self { arrival, material: None, is_flat: true, scattering, shares: [0.0, 0.0, 0.0, 1.0], backlight: None }
     }
 
     /// Chance that a path goes on by the smooth lobes.

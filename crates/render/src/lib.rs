@@ -47,6 +47,7 @@
 //! - `dielectric`s do not disperse.
 
 mod accel;
+mod backlight;
 mod exact_sun;
 mod film;
 mod guide;

@@ -2,9 +2,10 @@
 
 use super::{Integrator, Met, path::Path};
 use crate::accel::Hit;
+use crate::backlight::Backlight;
 use crate::guide::Guide;
 use crate::light::{LightSample, at_infinity, power_heuristic};
-use crate::material::{Arrival, Emitter, Inside, Smooth, reflect};
+use crate::material::{Arrival, Emitter, Inside, Smooth, SmoothValue, reflect};
 use crate::shapes::Ray;
 use crate::transmit::Target;
 use crate::world::{Facing, Object};
@@ -25,8 +26,12 @@ impl Integrator<'_> {
             is_last: self.is_last(path),
             guide: self.guide(&met.scattering.smooth),
             inside: path.inside,
+            backlight: met.backlight,
         };
-        let mut sum = Rgb::ZERO;
+        let mut sum = match (&met.scattering.smooth, met.backlight) {
+            (Smooth::Table(lobes), Some(backlight)) => lobes.backlit(backlight),
+            _ => Rgb::ZERO,
+        };
         for &sun in self.world.distant.suns() {
             if let Some(sample) = self.world.distant.sample_sun(sun, sampler.next_2d()) {
                 sum += self.received(&receiver, &sample, &Target::sun(sun, &sample));
@@ -69,8 +74,9 @@ impl Integrator<'_> {
         }
         let ray = Ray::new(receiver.origin(sample.direction), sample.direction);
         let transmitted = self.world.transmitted(&ray, target, receiver.inside);
+        let known = self.known_dome_light(receiver, sample, &value);
         if transmitted.is_blocked() {
-            return Rgb::ZERO;
+            return -known;
         }
         let finds =
             !transmitted.only_by_shadow_rays && (!sample.is_direct || receiver.smooth.samples_find_sources());
@@ -83,7 +89,18 @@ impl Integrator<'_> {
             (true, false) => 0.0,
         };
         let scattered = value.diffuse * diffuse_weight + value.glossy * weight;
-        scattered * sample.radiance * transmitted.share * (receiver.cosine(sample.direction) / sample.pdf)
+        scattered * sample.radiance * transmitted.share * (receiver.cosine(sample.direction) / sample.pdf) - known
+    }
+
+    /// What the sample would bring in the far field, which the shade's radiance holds already.
+    fn known_dome_light(&self, receiver: &Receiver, sample: &LightSample, value: &SmoothValue) -> Rgb {
+        let Some(backlight) = receiver.backlight.filter(|_| sample.is_dome) else { return Rgb::ZERO };
+        let field = backlight.field(self.world, sample.direction, sample.radiance);
+        if field == Rgb::ZERO {
+            return field;
+        }
+        let weight = power_heuristic(sample.pdf, receiver.share * receiver.pdf(sample.direction));
+        value.glossy * field * (weight * receiver.cosine(sample.direction) / sample.pdf)
     }
 
     /// Suns reflected by planar mirrors: Radiance's virtual sources. Sampled paths leave them out.
@@ -255,10 +272,12 @@ struct Receiver<'a, 'w> {
     guide: Option<&'a Guide>,
     /// Mist and antimatter around.
     inside: Inside,
+    /// What is known of the light behind.
+    backlight: Option<&'a Backlight>,
 }
 
 impl Receiver<'_, '_> {
-    fn smooth_value(&self, sample: &LightSample) -> crate::material::SmoothValue {
+    fn smooth_value(&self, sample: &LightSample) -> SmoothValue {
         if sample.is_direct {
             self.smooth.toward_source(sample.direction, sample.solid_angle)
         } else {

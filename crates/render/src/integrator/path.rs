@@ -37,6 +37,8 @@ pub(super) struct Path {
     pub first_direction: Vec3,
     /// What the light past the last diffuse bounce adds at the end.
     pub ambient: Rgb,
+    /// What the path may find of a far field that was counted before (see [`crate::backlight`]), to be taken off once.
+    pub known: Rgb,
     /// Extinction of the solid that the path is in [1/m].
     extinction: Rgb,
     /// Way since the camera, and since the path was last scattered, mirrored or refracted [m].
@@ -60,6 +62,7 @@ impl Path {
             is_distorted: false,
             first_direction: ray.direction,
             ambient: Rgb::ZERO,
+            known: Rgb::ZERO,
             extinction: Rgb::ZERO,
             travelled: 0.0,
             distance: 0.0,
@@ -70,6 +73,11 @@ impl Path {
     /// Does the path come from the camera with nothing but straight passes, mirrors and refractions?
     pub fn is_view(&self) -> bool {
         self.departure.is_none()
+    }
+
+    /// Take [`Self::known`].
+    pub fn known(&mut self) -> Rgb {
+        std::mem::replace(&mut self.known, Rgb::ZERO)
     }
 
     /// Count the way to a surface.

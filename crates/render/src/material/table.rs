@@ -12,8 +12,9 @@
 //! rules such a table is whole, and the straight light of an emitter does count twice, as in Radiance.)
 
 use super::{Arrival, Scattering, Smooth, SmoothValue, smooth::SmoothSample};
+use crate::backlight::Backlight;
 use std::{f64::consts::FRAC_1_PI, sync::Arc};
-use sunpeak_bsdf::{Bsdf, Mode, PeakRule};
+use sunpeak_bsdf::{Backlit, Bsdf, Mode, PeakRule};
 use sunpeak_core::{Frame, Rgb, Vec3, luminance, warp};
 
 /// The material.
@@ -37,7 +38,7 @@ pub(crate) struct Table {
 impl Table {
     /// z the front normal, y up, x = y cross z, or its opposite in a mirrored instance. Where a curved surface's normal runs
     /// along the up vector, any frame serves.
-    fn frame(&self, normal: Vec3) -> Frame {
+    pub fn frame(&self, normal: Vec3) -> Frame {
         let frame = Frame::from_normal_up(normal, self.up).unwrap_or_else(|| Frame::from_normal(normal));
         if self.mirrored { Frame { x: -frame.x, ..frame } } else { frame }
     }
@@ -68,6 +69,12 @@ impl Table {
             return Rgb::ZERO;
         }
         self.bsdf.through(self.frame(arrival.normal).to_local(-arrival.direction), self.rule) * arrival.tint
+    }
+
+    /// What the surface gives off, as rays meet it at its front or not, in the light of a far field behind it (world axes).
+    pub fn backlit(&self, normal: Vec3, at_front: bool, field: impl Fn(Vec3) -> Rgb) -> Option<Backlit> {
+        let frame = self.frame(normal);
+        self.bsdf.backlit(at_front, self.rule, |w_out| field(frame.to_world(w_out)))
     }
 
     pub fn scatter(&self, arrival: &Arrival, view: bool) -> Scattering<'_> {
@@ -165,6 +172,11 @@ impl TableLobes<'_> {
     pub fn offset(&self, direction: Vec3) -> Vec3 {
         let is_transmission = direction.dot(self.frame.z) * self.w_in.z < 0.0;
         if is_transmission { self.table.offset(self.frame.z) } else { Vec3::ZERO }
+    }
+
+    /// Radiance that the surface gives off in the light of a far field.
+    pub fn backlit(&self, backlight: &Backlight) -> Rgb {
+        backlight.radiance(self.w_in) * self.tint
     }
 
     pub fn has_source_rule(&self) -> bool {

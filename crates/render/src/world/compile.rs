@@ -3,7 +3,8 @@
 use super::{Facing, Object, World};
 use crate::WorldOptions;
 use crate::accel::{Accel, Geometry, Primitive};
-use crate::guide::Guide;
+use crate::backlight::Backlights;
+use crate::guide::{Guide, ScatteredSun};
 use crate::light::{Distant, DistantSources, Lamp, LampShape, Lamps};
 use crate::material::{
     Alternate, Antimatter, Ashikhmin, Dielectric, Emitter, EmitterKind, Glass, Material, MaterialId, Mirror,
@@ -48,7 +49,8 @@ struct Compiler<'s> {
     lamps: Vec<Lamp>,
     mirrors: Vec<u32>,
     prisms: Vec<(u32, Vec3)>,
-    shades: Vec<Triangle>,
+    /// Pieces of shades, each with its object.
+    shades: Vec<(u32, Triangle)>,
     meshes: Vec<MeshSurface>,
     /// Of each object: where its modifier stands in the scene. Of surfaces at the same place the later is seen.
     ranks: Vec<u32>,
@@ -81,12 +83,13 @@ impl<'s> Compiler<'s> {
         }
     }
 
-    fn finish(self) -> Result<World> {
-        let distant = DistantSources::new(self.sources);
+    fn finish(mut self) -> Result<World> {
+        let distant = DistantSources::new(std::mem::take(&mut self.sources));
         let is_volume = |m: &Material| matches!(m, Material::Mist(_) | Material::Antimatter(_));
         let has_volumes = self.materials.iter().any(is_volume);
-        let suns = distant.suns().iter().map(|&sun| distant.get(sun).direction).collect();
-        Ok(World {
+        let suns = self.scattered_suns(&distant);
+        let shades: Vec<Triangle> = self.shades.iter().map(|&(_, triangle)| triangle).collect();
+        let mut world = World {
             accel: Accel::build(self.primitives, self.analytic)?,
             objects: self.objects,
             surfaces: self.surfaces,
@@ -97,10 +100,33 @@ impl<'s> Compiler<'s> {
             prisms: self.prisms,
             rule: self.options.peak,
             rays: Default::default(),
-            guide: Guide::new(self.shades, suns),
+            guide: Guide::new(shades, suns),
+            backlights: Default::default(),
             meshes: self.meshes,
             has_volumes,
-        })
+        };
+        world.backlights = Backlights::find(&world, &self.shades);
+        Ok(world)
+    }
+
+    /// Each sun that shades of each table and orientation scatter.
+    fn scattered_suns(&self, distant: &DistantSources) -> Vec<ScatteredSun> {
+        let mut found: Vec<ScatteredSun> = Vec::new();
+        for &(object, _) in &self.shades {
+            let Object { material, facing: Facing::Flat(normal), .. } = self.objects[object as usize] else {
+                continue;
+            };
+            for id in self.seen_materials(material) {
+                let Material::Table(table) = &self.materials[id.0 as usize] else { continue };
+                let suns = distant.suns().iter().map(|&sun| distant.get(sun).direction);
+                for sun in suns.filter_map(|sun| ScatteredSun::new(table, normal, sun)) {
+                    if !found.iter().any(|known| known.is_like(&sun)) {
+                        found.push(sun);
+                    }
+                }
+            }
+        }
+        found
     }
 
     fn add(&mut self, surface: &'s Surface) -> Result<()> {
@@ -146,7 +172,7 @@ impl<'s> Compiler<'s> {
             Some(triangles) => {
                 self.add_lamp(object, material, LampShape::triangles(triangles.clone(), normal));
                 if self.is_any(material, Material::is_shade) {
-                    self.shades.extend(&triangles);
+                    self.shades.extend(triangles.iter().map(|&triangle| (object, triangle)));
                 }
                 triangles.into_iter().for_each(|t| self.add_primitive(object, Geometry::Triangle(t)));
             }
@@ -183,7 +209,7 @@ impl<'s> Compiler<'s> {
                 self.add_lamp(object, material, LampShape::triangles(vec![triangle], normal));
             }
             if is_shade {
-                self.shades.push(triangle);
+                self.shades.push((object, triangle));
             }
             self.add_primitive(object, Geometry::Triangle(triangle));
         }
