@@ -2,10 +2,10 @@
 
 use crate::exact_sun::ExactSuns;
 use crate::integrator::{Integrator, Limits};
-use crate::passes::{Means, Reports, estimate_until};
+use crate::passes::{Draw, Means, Reports, estimate_until};
 use crate::shapes::Ray;
 use crate::{RenderOptions, World};
-use sunpeak_core::{Control, Error, LUMINOUS_EFFICACY, Result, Rgb, Sampler};
+use sunpeak_core::{Control, Error, LUMINOUS_EFFICACY, Result, Rgb};
 use sunpeak_scene::{BlockErrors, Camera, ExactSource, Picture, View, disc_coverage};
 
 /// Render a picture of `width` by `height` pixels; each pixel is the mean over its area (a box filter).
@@ -60,7 +60,7 @@ pub fn render_until(
         options,
         Reports { control, rays: &world.rays },
         |pixel| film.block(pixel),
-        |pixel, s| film.sample(&integrator, pixel, s),
+        |pixel, draw| film.sample(&integrator, pixel, draw),
         judge_means.as_ref().map(|judge| judge as _),
     )?;
     world.check_expressions()?;
@@ -114,16 +114,23 @@ impl Film {
         picture
     }
 
-    fn sample(&self, integrator: &Integrator, pixel: usize, index: u64) -> Rgb {
-        let mut sampler = Sampler::new(self.seed, pixel as u64, index);
-        let [u, v] = sampler.next_2d();
+    fn sample(&self, integrator: &Integrator, pixel: usize, draw: Draw) -> Rgb {
         let (column, row) = (pixel % self.width, pixel / self.width);
+        let place = z_order(column % BLOCK, row % BLOCK);
+        let mut sampler = draw.together(self.seed, u64::from(self.block(pixel)), place);
+        let [u, v] = sampler.next_2d();
         let x = (column as f64 + u) / self.width as f64;
         let y = 1.0 - (row as f64 + v) / self.height as f64;
         let Some(ray) = self.camera.ray(x, y) else { return Rgb::ZERO };
         let start = Ray::new(ray.origin, ray.direction);
         integrator.radiance(start, ray.max_distance, &mut sampler)
     }
+}
+
+/// Place along the curve that goes through a square of 8 by 8 so that what is near on the curve is near in the square.
+fn z_order(column: usize, row: usize) -> u64 {
+    let bit = |k: usize| ((column >> k & 1) << (2 * k) | (row >> k & 1) << (2 * k + 1)) as u64;
+    bit(0) | bit(1) | bit(2)
 }
 
 /// The source's share of each pixel.

@@ -23,6 +23,9 @@ use sunpeak_core::{Frame, Rgb, Sampler, Vec3, luminance};
 /// that have come far are ended just before they meet the sky; lower, and they bounce on for nothing.
 const ROULETTE_BELOW: f64 = 0.05;
 
+/// Share of scattered paths that meet a shade before a far field and look for what differs from that.
+const CORRECTED: f64 = 0.3;
+
 /// Past so many events the chance of survival is never above the ceiling, so that paths in lossless rooms end.
 const ROULETTE_ALWAYS: u32 = 32;
 const ROULETTE_CEILING: f64 = 0.95;
@@ -120,7 +123,15 @@ impl Integrator<'_> {
                     let mut met = Met::new(self.world, &hit, material, arrival, path.is_view());
                     branches.extend(met.split_straight(&path));
                     if met.smooth_share() > 0.0 {
-                        sum += path.throughput * self.direct(&path, &met, sampler);
+                        sum += path.throughput * self.direct_from_suns(&path, &met, sampler);
+                        if met.backlight.is_some() && !path.is_view() {
+                            // Most of the shade's light is known; the rest, seldom looked for, counts the more.
+                            if sampler.next_1d() >= CORRECTED {
+                                return sum + path.ambient;
+                            }
+                            path.throughput /= CORRECTED;
+                        }
+                        sum += path.throughput * self.direct_from_others(&path, &met, sampler);
                     }
                     let goes_on = self.go_on(&mut path, &met, sampler);
                     sum -= path.known();
@@ -206,12 +217,16 @@ impl Integrator<'_> {
 
     fn draw(&self, met: &Met, sampler: &mut Sampler) -> Option<SmoothSample> {
         let smooth = &met.scattering.smooth;
-        let Some(guide) = self.guide(smooth) else { return smooth.sample(sampler) };
-        let (choice, own) = (sampler.next_1d(), guide.own_share());
+        let Some(guide) = self.guide(smooth) else {
+            let [choice, u, v] = sampler.next_3d();
+            return smooth.sample(choice, [u, v], sampler);
+        };
+        let own = guide.own_share();
+        let [choice, u, v] = sampler.next_3d();
         let direction = if choice < own {
-            smooth.sample(sampler)?.direction
+            smooth.sample(choice / own, [u, v], sampler)?.direction
         } else {
-            guide.sample(met.arrival.point, (choice - own) / (1.0 - own), sampler.next_2d())?
+            guide.sample(met.arrival.point, (choice - own) / (1.0 - own), [u, v])?
         };
         let pdf = own * smooth.pdf(direction) + guide.pdf(met.arrival.point, direction);
         let cosine = direction.dot(met.arrival.normal).abs();

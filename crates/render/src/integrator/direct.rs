@@ -19,7 +19,11 @@ const ALL_REFLECTED_SUNS: usize = 4;
 impl Integrator<'_> {
     /// Light from emitters that the smooth lobes scatter back along the path.
     pub(super) fn direct(&self, path: &Path, met: &Met, sampler: &mut Sampler) -> Rgb {
-        let receiver = Receiver {
+        self.direct_from_suns(path, met, sampler) + self.direct_from_others(path, met, sampler)
+    }
+
+    fn receiver<'a, 'w>(&'a self, path: &Path, met: &'a Met<'w>) -> Receiver<'a, 'w> {
+        Receiver {
             arrival: &met.arrival,
             smooth: &met.scattering.smooth,
             share: met.smooth_share(),
@@ -27,7 +31,12 @@ impl Integrator<'_> {
             guide: self.guide(&met.scattering.smooth),
             inside: path.inside,
             backlight: met.backlight,
-        };
+        }
+    }
+
+    /// The part from suns, and what a shade gives off in the light of a far field.
+    pub(super) fn direct_from_suns(&self, path: &Path, met: &Met, sampler: &mut Sampler) -> Rgb {
+        let receiver = self.receiver(path, met);
         let mut sum = match (&met.scattering.smooth, met.backlight) {
             (Smooth::Table(lobes), Some(backlight)) => lobes.backlit(backlight),
             _ => Rgb::ZERO,
@@ -41,6 +50,13 @@ impl Integrator<'_> {
         if !self.world.prisms.is_empty() {
             sum += self.suns_through_prisms(&receiver, sampler);
         }
+        sum
+    }
+
+    /// The part from sky, ground and lamps, less what of it is known.
+    pub(super) fn direct_from_others(&self, path: &Path, met: &Met, sampler: &mut Sampler) -> Rgb {
+        let receiver = self.receiver(path, met);
+        let mut sum = Rgb::ZERO;
         if self.world.distant.has_dome()
             && let Some(sample) = self.world.distant.sample_dome(sampler.next_2d())
         {
