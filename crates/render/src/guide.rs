@@ -28,8 +28,17 @@ const MAX_SCATTERED_SUNS: usize = 8;
 pub(crate) struct Guide {
     shades: Vec<Triangle>,
     suns: Vec<ScatteredSun>,
-    to_shades: f64,
-    against_suns: f64,
+}
+
+/// How many directions of each kind are drawn at a vertex, on average.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rates {
+    /// Of the surface's own lobes.
+    pub own: f64,
+    /// Towards the shades.
+    pub shades: f64,
+    /// Against the scattered suns.
+    pub suns: f64,
 }
 
 /// A sun, and the shades of one table and orientation that scatter its light.
@@ -76,34 +85,38 @@ impl Guide {
         if shades.len() > MAX_TRIANGLES {
             shades.clear();
         }
-        let to_shades = if shades.is_empty() { 0.0 } else { TO_SHADES };
-        let against_suns = if suns.is_empty() { 0.0 } else { AGAINST_SUNS };
-        (to_shades + against_suns > 0.0).then_some(Self { shades, suns, to_shades, against_suns })
+        (!shades.is_empty() || !suns.is_empty()).then_some(Self { shades, suns })
     }
 
-    /// Share of directions that are the surface's own.
-    pub fn own_share(&self) -> f64 {
-        1.0 - self.to_shades - self.against_suns
+    /// One direction in all.
+    pub fn one_direction(&self) -> Rates {
+        let shades = if self.shades.is_empty() { 0.0 } else { TO_SHADES };
+        let suns = if self.suns.is_empty() { 0.0 } else { AGAINST_SUNS };
+        Rates { own: 1.0 - shades - suns, shades, suns }
     }
 
-    /// Draw a direction from a point; `choice` in [0, 1) picks the way.
-    pub fn sample(&self, point: Vec3, choice: f64, u: [f64; 2]) -> Option<Vec3> {
-        let guided = self.to_shades + self.against_suns;
-        let choice = choice * guided;
-        if choice < self.to_shades {
-            self.toward_shade(point, choice / self.to_shades, u)
-        } else {
-            let at = (choice - self.to_shades) / self.against_suns * self.suns.len() as f64;
-            let sun = self.suns.get(at as usize)?;
-            sun.sample([at.fract(), u[0], u[1]])
-        }
+    /// One direction each way.
+    pub fn one_each(&self) -> Rates {
+        let one_if = |is_there: bool| f64::from(u8::from(is_there));
+        Rates { own: 1.0, shades: one_if(!self.shades.is_empty()), suns: one_if(!self.suns.is_empty()) }
     }
 
-    /// Density [1/sr] of the guided share of directions: it integrates to 1 - [`Self::own_share`].
-    pub fn pdf(&self, point: Vec3, direction: Vec3) -> f64 {
+    /// Draw a direction from a point towards a shade.
+    pub fn sample_shades(&self, point: Vec3, u: [f64; 3]) -> Option<Vec3> {
+        self.toward_shade(point, u[0], [u[1], u[2]])
+    }
+
+    /// Draw a direction against which a sun is scattered.
+    pub fn sample_suns(&self, u: [f64; 3]) -> Option<Vec3> {
+        let at = u[0] * self.suns.len() as f64;
+        self.suns.get(at as usize)?.sample([at.fract(), u[1], u[2]])
+    }
+
+    /// Density [1/sr] of the guided directions at these rates.
+    pub fn pdf(&self, rates: &Rates, point: Vec3, direction: Vec3) -> f64 {
         let suns: f64 = self.suns.iter().map(|sun| sun.pdf(direction)).sum();
-        let suns = if self.suns.is_empty() { 0.0 } else { self.against_suns * suns / self.suns.len() as f64 };
-        suns + self.to_shades * self.shades_pdf(point, direction)
+        let suns = if self.suns.is_empty() { 0.0 } else { rates.suns * suns / self.suns.len() as f64 };
+        suns + rates.shades * self.shades_pdf(point, direction)
     }
 
     /// Triangles are chosen in proportion to the solid angle that they have, roughly.
@@ -190,11 +203,10 @@ mod tests {
         for point in [Vec3::new(0.2, 0.1, 0.3), Vec3::new(-0.5, 1.9, 0.5), Vec3::new(5.0, 5.0, 5.0)] {
             let truth: f64 = shades.iter().map(|t| solid_angle(t, point)).sum();
             let guide = Guide::new(shades.clone(), Vec::new()).expect("a guide");
-            let guided = 1.0 - guide.own_share();
             let (mut random, n) = (Random(7), 200_000);
             let sum: f64 = (0..n)
-                .filter_map(|_| guide.sample(point, random.next(), [random.next(), random.next()]))
-                .map(|d| guided / guide.pdf(point, d))
+                .filter_map(|_| guide.sample_shades(point, [random.next(), random.next(), random.next()]))
+                .map(|d| 1.0 / guide.pdf(&guide.one_each(), point, d))
                 .sum();
             assert!(
                 (sum / f64::from(n) / truth - 1.0).abs() < 0.01,

@@ -3,7 +3,7 @@
 use super::{Integrator, Met, path::Path};
 use crate::accel::Hit;
 use crate::backlight::Backlight;
-use crate::guide::Guide;
+use crate::guide::{Guide, Rates};
 use crate::light::{LightSample, at_infinity, power_heuristic};
 use crate::material::{Arrival, Emitter, Inside, Smooth, SmoothValue, reflect};
 use crate::shapes::Ray;
@@ -28,7 +28,7 @@ impl Integrator<'_> {
             smooth: &met.scattering.smooth,
             share: met.smooth_share(),
             is_last: self.is_last(path),
-            guide: self.guide(&met.scattering.smooth),
+            guide: self.guided(path, &met.scattering.smooth),
             inside: path.inside,
             backlight: met.backlight,
         }
@@ -285,7 +285,7 @@ struct Receiver<'a, 'w> {
     share: f64,
     /// May no diffuse bounce follow?
     is_last: bool,
-    guide: Option<&'a Guide>,
+    guide: Option<(&'a Guide, Rates)>,
     /// Mist and antimatter around.
     inside: Inside,
     /// What is known of the light behind.
@@ -304,8 +304,8 @@ impl Receiver<'_, '_> {
     /// Density [1/sr] with which paths go on in this direction, if they go on by the smooth lobes.
     fn pdf(&self, direction: Vec3) -> f64 {
         let own = self.smooth.pdf(direction);
-        match self.guide {
-            Some(guide) => guide.own_share() * own + guide.pdf(self.arrival.point, direction),
+        match &self.guide {
+            Some((guide, rates)) => rates.own * own + guide.pdf(rates, self.arrival.point, direction),
             None => own,
         }
     }

@@ -37,8 +37,10 @@ pub(super) struct Path {
     pub first_direction: Vec3,
     /// What the light past the last diffuse bounce adds at the end.
     pub ambient: Rgb,
-    /// What the path may find of a far field that was counted before (see [`crate::backlight`]), to be taken off once.
+    /// Radiance that the path may find of a far field that was counted before (see [`crate::backlight`]).
     pub known: Rgb,
+    /// May it find such light?
+    pub is_known: bool,
     /// Extinction of the solid that the path is in [1/m].
     extinction: Rgb,
     /// Way since the camera, and since the path was last scattered, mirrored or refracted [m].
@@ -63,6 +65,7 @@ impl Path {
             first_direction: ray.direction,
             ambient: Rgb::ZERO,
             known: Rgb::ZERO,
+            is_known: false,
             extinction: Rgb::ZERO,
             travelled: 0.0,
             distance: 0.0,
@@ -75,9 +78,9 @@ impl Path {
         self.departure.is_none()
     }
 
-    /// Take [`Self::known`].
-    pub fn known(&mut self) -> Rgb {
-        std::mem::replace(&mut self.known, Rgb::ZERO)
+    /// Take off what is known, times what the path carries, once.
+    pub fn take_known(&mut self) -> Rgb {
+        std::mem::replace(&mut self.known, Rgb::ZERO) * self.throughput
     }
 
     /// Count the way to a surface.
@@ -141,5 +144,6 @@ impl Path {
         self.departure = Some(departure);
         self.is_bent = false;
         self.is_past_peak = false;
+        self.is_known = false;
     }
 }
