@@ -174,8 +174,8 @@ impl Integrator<'_> {
     fn scatter(&self, path: &mut Path, met: &Met, branches: &mut Vec<Path>, sampler: &mut Sampler) -> bool {
         let smooth = &met.scattering.smooth;
         let Some((guide, rates)) = self.guided(path, smooth) else {
-            let [choice, u, v] = sampler.next_3d();
-            let sample = smooth.sample(choice, [u, v], sampler);
+            let (u, choice) = (sampler.next_2d(), sampler.next_1d());
+            let sample = smooth.sample(choice, u, sampler);
             return sample.is_some_and(|sample| self.leave(path, met, &sample, sampler));
         };
         let point = met.arrival.point;
@@ -198,11 +198,11 @@ impl Integrator<'_> {
             if rates.suns > 0.0 {
                 branch(guide.sample_suns(sampler.next_3d()), path, sampler);
             }
-            let [choice, u, v] = sampler.next_3d();
+            let [u, v, choice] = sampler.next_3d();
             let direction = smooth.sample(choice, [u, v], sampler).map(|sample| sample.direction);
             return go(path, direction, sampler);
         }
-        let [choice, u, v] = sampler.next_3d();
+        let [u, v, choice] = sampler.next_3d();
         let direction = if choice < rates.own {
             smooth.sample(choice / rates.own, [u, v], sampler).map(|sample| sample.direction)
         } else if choice < rates.own + rates.shades {
