@@ -19,12 +19,14 @@ if TYPE_CHECKING:
     from sunpeak.fabrics import Fabric, RollerBlind
     from sunpeak.glare_report import GlareReport, GlareSource, ZoneLuminances
     from sunpeak.glare_rules import GlareRules, RulesName, Task
+    from sunpeak.panes import Pane
     from sunpeak.pictures import ExactSource, Picture
     from sunpeak.rendering import World, render, trace
     from sunpeak.scattering import Bsdf, Evidence, Samples, direction, side_of_ray
     from sunpeak.scene_check import SceneCheck, check_scene
     from sunpeak.scenes import Rays, Scene, View
     from sunpeak.skies import Place, Sky, SunPosition, sun_position
+    from sunpeak.systems import Shade, Straight, System
 
 __all__ = [
     "Blind",
@@ -37,6 +39,7 @@ __all__ = [
     "GlareRules",
     "GlareSource",
     "InputError",
+    "Pane",
     "Picture",
     "Place",
     "Rays",
@@ -45,8 +48,11 @@ __all__ = [
     "Samples",
     "Scene",
     "SceneCheck",
+    "Shade",
     "Sky",
+    "Straight",
     "SunPosition",
+    "System",
     "Task",
     "Verdict",
     "View",
@@ -79,6 +85,7 @@ _HOMES = {
     "GlareRules": "glare_rules",
     "RulesName": "glare_rules",
     "Task": "glare_rules",
+    "Pane": "panes",
     "ExactSource": "pictures",
     "Picture": "pictures",
     "World": "rendering",
@@ -98,6 +105,9 @@ _HOMES = {
     "Sky": "skies",
     "SunPosition": "skies",
     "sun_position": "skies",
+    "Shade": "systems",
+    "Straight": "systems",
+    "System": "systems",
 }
 """Where each name lives; a module is read when a name of it is first asked for, so that small commands start fast."""
 

@@ -13,6 +13,7 @@ mod render;
 mod scene;
 mod sky;
 mod synthetic;
+mod system;
 mod watch;
 
 use pyo3::prelude::*;
@@ -45,6 +46,8 @@ mod _core {
     use super::sky::PySky;
     #[pymodule_export]
     use super::synthetic::{synthetic_bsdf, synthetic_through};
+    #[pymodule_export]
+    use super::system::{PyLayer, PySystem, bands_of, load_solar, slab_optics, two_band_xml, visible_share};
 
     use pyo3::prelude::*;
 

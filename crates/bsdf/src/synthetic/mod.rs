@@ -26,5 +26,5 @@ pub use panel::{Diffuser, Panel};
 pub use perforated::Perforated;
 pub use product::{Lobe, Product};
 pub use roller_blind::RollerBlind;
-pub use tabulate::tabulate;
+pub use tabulate::{tabulate, tabulate_exact};
 pub use weave::Weave;
