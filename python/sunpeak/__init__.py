@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from sunpeak.scattering import Bsdf, Evidence, Samples, direction, side_of_ray
     from sunpeak.scene_check import SceneCheck, check_scene
     from sunpeak.scenes import Rays, Scene, View
+    from sunpeak.sheets import ExpandedMesh, Perforated
     from sunpeak.skies import Place, Sky, SunPosition, sun_position
     from sunpeak.systems import Shade, Straight, System
 
@@ -34,12 +35,14 @@ __all__ = [
     "BsdfReport",
     "Evidence",
     "ExactSource",
+    "ExpandedMesh",
     "Fabric",
     "GlareReport",
     "GlareRules",
     "GlareSource",
     "InputError",
     "Pane",
+    "Perforated",
     "Picture",
     "Place",
     "Rays",
@@ -101,6 +104,8 @@ _HOMES = {
     "Rays": "scenes",
     "Scene": "scenes",
     "View": "scenes",
+    "ExpandedMesh": "sheets",
+    "Perforated": "sheets",
     "Place": "skies",
     "Sky": "skies",
     "SunPosition": "skies",

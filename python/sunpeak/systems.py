@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sunpeak import _core
-from sunpeak.files import write_text
+from sunpeak.bands import write_bands
 from sunpeak.panes import Pane
 from sunpeak.scattering import Bsdf, Floats, rows
 
@@ -107,11 +107,5 @@ class System:
 
         `split` names a folder for the visible band with its exact straight part (`Bsdf.load` reads it).
         """
-        visible = self.bsdf(basis, "visible", panes=panes)
-        if self.has_solar:
-            text = _core.two_band_xml(visible._core, self.bsdf(basis, "solar", panes=panes)._core)
-        else:
-            text = _core.bsdf_xml(visible._core)
-        if split is not None:
-            visible.save_split(split)
-        write_text(path, text)
+        solar = self.bsdf(basis, "solar", panes=panes) if self.has_solar else None
+        write_bands(self.bsdf(basis, "visible", panes=panes), solar, path, split)

@@ -1,7 +1,7 @@
 """LBNL's pyWinCalc as an oracle for glazing systems: layers as it has them, and a standard with few wavelengths.
 
-pyWinCalc 3.3.1 solves a shade at each wavelength of its standard, a second each. Layers that are the same at all wavelengths
-give the same at a few.
+pyWinCalc 3.3.1 solves a shade at each wavelength of its standard, a second each. Layers that are the same at all
+wavelengths give the same at a few.
 """
 
 import shutil

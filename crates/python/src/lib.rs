@@ -33,7 +33,7 @@ mod _core {
     #[pymodule_export]
     use super::expressions::evaluate;
     #[pymodule_export]
-    use super::fabric::{fabric_xml, roller_blind_transmittance, roller_blind_xml};
+    use super::fabric::{fabric_xml, roller_blind, roller_blind_transmittance};
     #[pymodule_export]
     use super::glare::{glare, glare_sources, position_indices};
     #[pymodule_export]
@@ -45,7 +45,7 @@ mod _core {
     #[pymodule_export]
     use super::sky::PySky;
     #[pymodule_export]
-    use super::synthetic::{synthetic_bsdf, synthetic_through};
+    use super::synthetic::{exact_bsdf, synthetic_bsdf, synthetic_through};
     #[pymodule_export]
     use super::system::{PyLayer, PySystem, bands_of, load_solar, slab_optics, two_band_xml, visible_share};
 

@@ -57,7 +57,9 @@ impl Pane {
         if n == 0 {
             return Err(Error::value("pane: no wavelengths; expected at least one"));
         }
-        if !self.wavelengths_um.windows(2).all(|w| w[0] < w[1]) || !(self.wavelengths_um[0] > 0.0) {
+        let bounds = f64::MIN_POSITIVE..f64::INFINITY;
+        let ascending = self.wavelengths_um.windows(2).all(|w| w[0] < w[1]);
+        if !ascending || !self.wavelengths_um.iter().all(|um| bounds.contains(um)) {
             return Err(Error::value("pane: wavelengths; expected them positive and ascending, in um"));
         }
         let lists = [

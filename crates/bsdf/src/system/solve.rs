@@ -39,8 +39,14 @@ const ALIKE: f64 = 0.02;
 /// Side of the grid on which light that is scattered more than once is followed for trees.
 const COARSE_SIDE: usize = 16;
 
-/// Points a side of a tree's cell over which light that is scattered once is averaged.
+/// Points a side of a tree's cell over which a residual is averaged for light that is scattered once.
 const ONCE_POINTS: usize = 2;
+
+/// The same for panes, which change fast at grazing incidence.
+const PANE_POINTS: usize = 4;
+
+/// Points a side of a patch for panes.
+const PATCH_POINTS: usize = 8;
 
 /// Wavelengths at which the system is alike.
 struct Group {
@@ -171,7 +177,7 @@ impl<'a> Solver<'a> {
         let points = if self.in_middle() {
             vec![middle(&self.cells.division, cell)]
         } else {
-            self.cells.division.points(cell, 8)
+            self.cells.division.points(cell, PATCH_POINTS)
         };
         let share = 1.0 / points.len() as f64;
         Optics::mean(points.into_iter().map(|p| (share, self.stack(k, group, p))))
@@ -239,12 +245,12 @@ impl<'a> Solver<'a> {
             }
             let all = |c: usize| straight.iter().fold(Optics::CLEAR, |all, layer| all.then(layer[c]));
             let deltas = Operators::straight(&(0..n).map(all).collect::<Vec<_>>());
-            for from in 0..2 {
+            for (from, sum) in sum.iter_mut().enumerate() {
                 for (to, operator, delta) in
                     [(1 - from, &whole.t[from], &deltas.t[from]), (from, &whole.r[from], &deltas.r[from])]
                 {
-                    operator.add_to(&mut sum[from][to], group.weight);
-                    delta.add_to(&mut sum[from][to], -group.weight);
+                    operator.add_to(&mut sum[to], group.weight);
+                    delta.add_to(&mut sum[to], -group.weight);
                 }
             }
             if beyond_once {
@@ -260,14 +266,13 @@ impl<'a> Solver<'a> {
 
 /// Take away what one layer scatters once.
 fn take_once(sum: &mut Fluxes, weight: f64, around: &[Around], residual: &Fluxes) {
-    for from in 0..2 {
+    for (from, sum) in sum.iter_mut().enumerate() {
         let arriving: Vec<[f64; 2]> = around.iter().map(|a| a.arriving(from)).collect();
-        for leaving_side in 0..2 {
-            let leaving: Vec<[f64; 2]> = around.iter().map(|a| a.leaving(leaving_side)).collect();
-            for (to, target) in sum[from].iter_mut().enumerate() {
-                for upon in 0..2 {
-                    let kernel = &residual[upon][leaving_side];
-                    for ((o, i), value) in target.indexed_iter_mut() {
+        for (upon, kernels) in residual.iter().enumerate() {
+            for (leaves, kernel) in kernels.iter().enumerate() {
+                let leaving: Vec<[f64; 2]> = around.iter().map(|a| a.leaving(leaves)).collect();
+                for (to, sum) in sum.iter_mut().enumerate() {
+                    for ((o, i), value) in sum.indexed_iter_mut() {
                         *value -= weight * leaving[o][to] * kernel[[o, i]] * arriving[i][upon];
                     }
                 }
@@ -282,36 +287,40 @@ fn around(layers: &[Vec<Optics>], own: usize, cell: usize) -> Around {
     Around::new(fold(&layers[..own]), layers[own][cell], fold(&layers[own + 1..]))
 }
 
+/// Two sides by two sides.
+type Shares = [[f64; 2]; 2];
+
 /// Light that one shade scatters once, in the cells of a tree.
 struct Once {
     incident: Vec<Vec<DVec2>>,
     exiting: Vec<Vec<DVec2>>,
-    /// By group and shade, at the middles of incident and exiting cells.
-    at_incident: Vec<Vec<Vec<Around>>>,
-    at_exiting: Vec<Vec<Vec<Around>>>,
+    /// By group, shade and incident cell: light from a side of the system that comes upon a side of the shade.
+    arriving: Vec<Vec<Vec<Shares>>>,
+    /// By group, shade and exiting cell: light from a side of the shade that leaves on a side of the system.
+    leaving: Vec<Vec<Vec<Shares>>>,
 }
 
 impl Once {
     fn new(solver: &Solver, incident: &Columns, exiting: &Columns) -> Self {
         let points = |division: &Columns| -> Vec<Vec<DVec2>> {
-            let n = if matches!(division, Columns::Radial { .. }) { 2 } else { ONCE_POINTS };
-            (0..division.len()).map(|cell| division.points(cell, n)).collect()
+            (0..division.len()).map(|cell| division.points(cell, ONCE_POINTS)).collect()
         };
-        let around = |division: &Columns| -> Vec<Vec<Vec<Around>>> {
-            let middles: Vec<DVec2> = (0..division.len()).map(|c| division.point(c, [0.5, 0.5])).collect();
+        let shares = |division: &Columns, of: fn(&Around, usize) -> [f64; 2]| -> Vec<Vec<Vec<Shares>>> {
+            let of_cell = |group: &Group, cell: usize| {
+                solver.shares_over(group, &division.points(cell, PANE_POINTS), of)
+            };
             let of_group = |group: &Group| {
-                let at = |&p: &DVec2| solver.layers_at(group, p);
-                let layers: Vec<Vec<Vec<Optics>>> = middles.par_iter().map(at).collect();
-                let of_shade = |k: usize| layers.iter().map(|l| self::around(l, 2 * k + 1, 0)).collect();
-                (0..solver.system.shades.len()).map(of_shade).collect()
+                let cells: Vec<Vec<Shares>> =
+                    (0..division.len()).into_par_iter().map(|cell| of_cell(group, cell)).collect();
+                (0..solver.system.shades.len()).map(|k| cells.iter().map(|c| c[k]).collect()).collect()
             };
             solver.groups.iter().map(of_group).collect()
         };
         Self {
             incident: points(incident),
             exiting: points(exiting),
-            at_incident: around(incident),
-            at_exiting: around(exiting),
+            arriving: shares(incident, Around::arriving),
+            leaving: shares(exiting, Around::leaving),
         }
     }
 
@@ -330,8 +339,8 @@ impl Once {
                         let factor: f64 = groups
                             .iter()
                             .map(|&g| {
-                                let arriving = self.at_incident[g][k][column].arriving(from)[upon];
-                                let leaving = self.at_exiting[g][k][cell].leaving(leaves)[to];
+                                let arriving = self.arriving[g][k][column][from][upon];
+                                let leaving = self.leaving[g][k][cell][leaves][to];
                                 solver.groups[g].weight * arriving * leaving
                             })
                             .sum();
@@ -351,6 +360,28 @@ impl Once {
 }
 
 impl Solver<'_> {
+    /// Means over points of what comes upon each shade, or leaves it.
+    fn shares_over(
+        &self,
+        group: &Group,
+        points: &[DVec2],
+        of: fn(&Around, usize) -> [f64; 2],
+    ) -> Vec<Shares> {
+        let mut means = vec![Shares::default(); self.system.shades.len()];
+        for &p in points {
+            let layers = self.layers_at(group, p);
+            for (k, mean) in means.iter_mut().enumerate() {
+                let around = around(&layers, 2 * k + 1, 0);
+                for (side, shares) in mean.iter_mut().enumerate() {
+                    for (share, value) in shares.iter_mut().zip(of(&around, side)) {
+                        *share += value / points.len() as f64;
+                    }
+                }
+            }
+        }
+        means
+    }
+
     /// Stacks and shades in their order at one point, as lists of one cell.
     fn layers_at(&self, group: &Group, p: DVec2) -> Vec<Vec<Optics>> {
         let mut layers = vec![vec![self.stack(0, group, p)]];
