@@ -41,6 +41,12 @@ pub struct Bsdf {
     pub name: String,
     /// Manufacturer in the file.
     pub manufacturer: String,
+    /// Thickness in the file [m].
+    pub thickness_m: Option<f64>,
+    /// How it was made, and its statistical error.
+    pub comments: String,
+    /// Names of all bands of the file.
+    pub bands: Vec<String>,
     /// `IncidentDataStructure` of the file: `Columns`, `TensorTree3` …
     pub structure: String,
     /// What was tolerated in the file.
@@ -126,10 +132,25 @@ impl Bsdf {
         Self {
             name: document.name,
             manufacturer: document.manufacturer,
+            thickness_m: document.thickness_m,
+            comments: document.comments,
+            bands: document.bands,
             structure: document.structure,
             warnings: document.warnings,
             transmission,
             reflection,
+        }
+    }
+
+    /// What the file says beside its tables.
+    pub(crate) fn document(&self) -> Document {
+        Document {
+            name: self.name.clone(),
+            manufacturer: self.manufacturer.clone(),
+            thickness_m: self.thickness_m,
+            comments: self.comments.clone(),
+            structure: self.structure.clone(),
+            ..Document::default()
         }
     }
 

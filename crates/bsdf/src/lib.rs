@@ -15,11 +15,14 @@
 pub mod basis;
 mod bsdf;
 mod cache;
+mod convert;
 mod distribution;
 mod incident;
 mod kernel;
+mod layout;
 mod load;
 pub mod outline;
+pub mod overlap;
 pub mod peak;
 mod picture_cells;
 mod proposal;
@@ -33,9 +36,11 @@ mod xml_write;
 
 pub use bsdf::{Bsdf, Mode, Sample, Sides};
 pub use cache::Cache;
+pub use convert::Conversion;
 pub use distribution::Distribution;
 pub use incident::Incident;
 pub use kernel::Spread;
+pub use layout::Layout;
 pub use peak::{ColumnPeak, Instrument, PeakRule, Split};
 pub use picture_cells::{ExitCell, IncidentCell};
 pub use proposal::Oriented;

@@ -1,6 +1,6 @@
 //! The bases that products are tabulated in, by name.
 
-use crate::{basis::AngleBasis, table::Columns};
+use crate::{basis::AngleBasis, layout::Layout, table::Columns};
 use std::sync::Arc;
 use sunpeak_core::{Error, Result};
 
@@ -84,12 +84,18 @@ impl Basis {
         AngleBasis::known(name).map(Arc::new)
     }
 
-    /// The incident division and the exiting one.
-    pub(super) fn divisions(self) -> [Columns; 2] {
+    /// Its cells.
+    pub fn layout(self) -> Layout {
         match (self, self.patches()) {
-            (_, Some(basis)) => [Columns::Patches(basis.clone()), Columns::Patches(basis)],
-            (Self::TensorTree3 { side }, _) => [Columns::Radial { side }, Columns::Square { side }],
-            (Self::TensorTree4 { side }, _) => [Columns::Square { side }, Columns::Square { side }],
+            (Self::TensorTree3 { side }, _) => {
+                Layout { incident: Columns::Radial { side }, exiting: Columns::Square { side } }
+            }
+            (Self::TensorTree4 { side }, _) => {
+                Layout { incident: Columns::Square { side }, exiting: Columns::Square { side } }
+            }
+            (_, Some(basis)) => {
+                Layout { incident: Columns::Patches(basis.clone()), exiting: Columns::Patches(basis) }
+            }
             _ => unreachable!("every other basis is a known matrix basis"),
         }
     }

@@ -8,6 +8,7 @@ use crate::{
     bsdf::{Bsdf, Sides},
     distribution::Distribution,
     kernel::{Kernel, Spread},
+    layout::Layout,
     table::{Columns, Matrix, Table},
     tree::Tree,
     xml::Document,
@@ -84,37 +85,17 @@ fn diffuse(reflectance: f64, basis: Basis) -> Table {
 type Planes = (Table, Option<[Vec<f32>; 2]>);
 
 fn transmission(product: &dyn Product, basis: Basis, seen_by: &Goniophotometer) -> Planes {
-    let [incident, exiting] = basis.divisions();
+    let layout = basis.layout();
+    let Layout { incident, exiting } = layout.clone();
     let averages = Averages { product, incident, exiting, blur: seen_by.blur(), rows: basis.is_isotropic() };
     let columns: Vec<[Vec<f32>; 3]> =
         (0..averages.incident.len()).into_par_iter().map(|i| averages.column(i, seen_by)).collect();
     let plane = |k: usize| {
         let value = |column: usize, cell: usize| columns[column][k].get(cell).copied().unwrap_or(0.0);
-        into_basis(basis, value)
+        layout.table(value)
     };
     let color = product.tint().map(|_| [plane(1).into_values(), plane(2).into_values()]);
     (plane(0), color)
-}
-
-/// A table of the basis from the values by column and exiting cell.
-fn into_basis(basis: Basis, value: impl Fn(usize, usize) -> f32) -> Table {
-    match (basis, basis.patches()) {
-        (_, Some(patches)) => {
-            let n = patches.len();
-            let values = (0..n * n).map(|k| value(k / n, k % n)).collect();
-            Table::Matrix(Matrix { incident: patches.clone(), exiting: patches, values })
-        }
-        (Basis::TensorTree3 { side }, _) => {
-            // The second half of an isotropic tree is not used.
-            let value = |c: [usize; 4]| if c[0] < side / 2 { value(c[0], c[1] * side + c[2]) } else { 0.0 };
-            Table::Tree(Tree::regular(3, side.trailing_zeros() as u8, value))
-        }
-        (Basis::TensorTree4 { side }, _) => {
-            let value = |c: [usize; 4]| value(c[0] * side + c[1], c[2] * side + c[3]);
-            Table::Tree(Tree::regular(4, side.trailing_zeros() as u8, value))
-        }
-        _ => unreachable!("every other basis is a known matrix basis"),
-    }
 }
 
 /// Cell averages of one side of a product.
