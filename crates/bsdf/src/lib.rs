@@ -45,3 +45,4 @@ pub use peak::{ColumnPeak, Instrument, PeakRule, Split};
 pub use picture_cells::{ExitCell, IncidentCell};
 pub use proposal::Oriented;
 pub use split_files::SplitFiles;
+pub use xml_write::Label;

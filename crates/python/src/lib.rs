@@ -2,6 +2,7 @@
 
 mod arrays;
 mod bsdf;
+mod bsdf_files;
 mod bsdf_report;
 mod error;
 mod expressions;
@@ -23,8 +24,10 @@ mod _core {
     #[pymodule_export]
     use super::bsdf::PyBsdf;
     #[pymodule_export]
+    use super::bsdf_files::{bsdf_xml, convert_bsdf, load_solar};
+    #[pymodule_export]
     use super::bsdf_report::{
-        bsdf_report, bsdf_xml, exit_cells, incident_cells, instrument_seen, probe_directions, save_split,
+        bsdf_report, exit_cells, incident_cells, instrument_seen, probe_directions, save_split,
         through_interval,
     };
     #[pymodule_export]

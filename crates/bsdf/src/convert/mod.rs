@@ -35,6 +35,32 @@ pub struct Conversion {
     pub keep_peak: bool,
 }
 
+impl Conversion {
+    /// What was done, for the file.
+    fn in_words(&self) -> String {
+        let mut done = Vec::new();
+        if self.flip {
+            done.push("turned over about its up axis".to_owned());
+        }
+        if self.swap_sides {
+            done.push("names of front and back exchanged".to_owned());
+        }
+        if self.rotate_deg != 0.0 {
+            done.push(format!("turned by {} degrees", self.rotate_deg));
+        }
+        if let Some(basis) = self.basis {
+            done.push(format!("converted to {basis} by flux"));
+        }
+        if self.keep_peak {
+            done.push("with its through peak as a delta".to_owned());
+        }
+        if self.reciprocal {
+            done.push("averaged by reciprocity".to_owned());
+        }
+        if done.is_empty() { String::new() } else { format!("Sunpeak: {}.", done.join(", ")) }
+    }
+}
+
 /// A side and mode by its name in the file.
 type Named = (&'static str, Tables);
 
@@ -63,7 +89,9 @@ impl Bsdf {
             (None, Some((_, (Table::Tree(tree), _)))) => format!("TensorTree{}", tree.rank()),
             _ => self.structure.clone(),
         };
-        let document = Document { structure, ..self.document() };
+        let mut document = Document { structure, ..self.document() };
+        let said = [document.comments.trim(), &to.in_words()].map(String::from);
+        document.comments = said.into_iter().filter(|s| !s.is_empty()).collect::<Vec<_>>().join("\n");
         Ok(Self::from_sides(document, sides(named)))
     }
 }
