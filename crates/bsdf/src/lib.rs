@@ -21,6 +21,7 @@ mod incident;
 mod kernel;
 mod layout;
 mod load;
+pub mod model;
 pub mod outline;
 pub mod overlap;
 pub mod peak;

@@ -9,6 +9,7 @@ mod expressions;
 mod fabric;
 mod glare;
 mod goal;
+mod model;
 mod picture;
 mod render;
 mod scene;
@@ -38,6 +39,8 @@ mod _core {
     use super::fabric::{fabric_xml, roller_blind_transmittance, roller_blind_xml};
     #[pymodule_export]
     use super::glare::{glare, glare_sources, position_indices};
+    #[pymodule_export]
+    use super::model::{model_bsdf, model_value};
     #[pymodule_export]
     use super::picture::PyPicture;
     #[pymodule_export]
