@@ -1,4 +1,4 @@
-"""BSDFs converted and made from formulas, against Radiance and quadratures: `convert.json` and the tables of `convert.md`.
+"""BSDFs converted and made from formulas, against Radiance and quadratures: `convert.json`, tables of `convert.md`.
 
 usage: python validation/convert.py [SCHEMA.xsd]      (about five minutes on two cores)
 
@@ -154,7 +154,7 @@ def quadrature(model: sp.Formula, light: np.ndarray, reflection: bool) -> float:
 
 
 def albedos() -> list[Row]:
-    """Tables of the models against quadratures over the hemisphere, for rings of an isotropic tree of 64 cells a side."""
+    """Tables of the models against quadratures over the hemisphere, for rings of an isotropic tree."""
     side, rings = 64, (6, 14, 22, 31)
     nodes, weights = np.polynomial.legendre.leggauss(3)
     rows: list[Row] = []

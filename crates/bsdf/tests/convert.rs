@@ -1,4 +1,5 @@
 //! Conversions keep flux, and say the same of the product: against counted points, against symmetry, against themselves.
+#![allow(clippy::unwrap_used)]
 
 use glam::DVec2;
 use std::{collections::BTreeMap, f64::consts::TAU};
