@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from sunpeak.comfort import glare
     from sunpeak.expressions import evaluate
     from sunpeak.fabrics import Fabric, RollerBlind
+    from sunpeak.formulas import Formula
     from sunpeak.glare_report import GlareReport, GlareSource, ZoneLuminances
     from sunpeak.glare_rules import GlareRules, RulesName, Task
     from sunpeak.panes import Pane
@@ -37,6 +38,7 @@ __all__ = [
     "ExactSource",
     "ExpandedMesh",
     "Fabric",
+    "Formula",
     "GlareReport",
     "GlareRules",
     "GlareSource",
@@ -82,6 +84,7 @@ _HOMES = {
     "evaluate": "expressions",
     "Fabric": "fabrics",
     "RollerBlind": "fabrics",
+    "Formula": "formulas",
     "GlareReport": "glare_report",
     "GlareSource": "glare_report",
     "ZoneLuminances": "glare_report",

@@ -45,8 +45,8 @@ class Shade:
         """Read an LBNL XML file, with its solar band if it has one, or the folder of a split."""
         visible = Bsdf.load(path)
         solar = None
-        if not Path(path).is_dir() and "Solar" in _core.bands_of(visible._core):
-            solar = Bsdf(_core.load_solar(path))
+        if not Path(path).is_dir() and "Solar" in visible.describe()["bands"]:
+            solar = Bsdf.load_solar(path)
         return cls(visible, solar, flipped, visible.describe()["name"] or Path(path).stem)
 
 
@@ -108,4 +108,6 @@ class System:
         `split` names a folder for the visible band with its exact straight part (`Bsdf.load` reads it).
         """
         solar = self.bsdf(basis, "solar", panes=panes) if self.has_solar else None
-        write_bands(self.bsdf(basis, "visible", panes=panes), solar, path, split)
+        layers = "; ".join(layer.name for layer in self.layers)
+        comments = f"Layers from outside to inside: {layers}. Panes in patches: {panes}."
+        write_bands(self.bsdf(basis, "visible", panes=panes), solar, path, split, comments)

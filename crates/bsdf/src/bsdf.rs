@@ -143,6 +143,18 @@ impl Bsdf {
         }
     }
 
+    /// What the file says beside its tables.
+    pub(crate) fn document(&self) -> Document {
+        Document {
+            name: self.name.clone(),
+            manufacturer: self.manufacturer.clone(),
+            thickness_m: self.thickness_m,
+            comments: self.comments.clone(),
+            structure: self.structure.clone(),
+            ..Document::default()
+        }
+    }
+
     fn lobe(&self, w_in: Vec3, mode: Mode) -> Option<&Lobe> {
         let side = usize::from(w_in.z <= 0.0);
         match mode {

@@ -4,8 +4,7 @@ use crate::{
     distribution::Distribution,
     peak::{ColumnPeak, Part, Split},
     synthetic::Basis,
-    table::{Columns, Matrix, Table},
-    tree::Tree,
+    table::Columns,
 };
 use glam::DVec2;
 use sunpeak_core::gray;
@@ -61,27 +60,6 @@ impl Columns {
     }
 }
 
-/// A table of the basis from the values by column and exiting cell.
-pub(crate) fn into_basis(basis: Basis, value: impl Fn(usize, usize) -> f32) -> Table {
-    match (basis, basis.patches()) {
-        (_, Some(patches)) => {
-            let n = patches.len();
-            let values = (0..n * n).map(|k| value(k / n, k % n)).collect();
-            Table::Matrix(Matrix { incident: patches.clone(), exiting: patches, values })
-        }
-        (Basis::TensorTree3 { side }, _) => {
-            // The second half of an isotropic tree is not used.
-            let value = |c: [usize; 4]| if c[0] < side / 2 { value(c[0], c[1] * side + c[2]) } else { 0.0 };
-            Table::Tree(Tree::regular(3, side.trailing_zeros() as u8, value))
-        }
-        (Basis::TensorTree4 { side }, _) => {
-            let value = |c: [usize; 4]| value(c[0] * side + c[1], c[2] * side + c[3]);
-            Table::Tree(Tree::regular(4, side.trailing_zeros() as u8, value))
-        }
-        _ => unreachable!("every other basis is a known matrix basis"),
-    }
-}
-
 /// What is scattered [1/sr] by column and cell, and the deltas of the columns, as a table with its split.
 pub(crate) fn with_exact_peak(
     basis: Basis,
@@ -89,7 +67,7 @@ pub(crate) fn with_exact_peak(
     deltas: &[Delta],
 ) -> Distribution {
     let [incident, exiting] = basis.divisions();
-    let table = into_basis(basis, |column, cell| {
+    let table = basis.layout().table(|column, cell| {
         let straight = deltas.get(column).map_or(0.0, |d| d.at(cell));
         (f64::from(scattered(column, cell)) + straight) as f32
     });

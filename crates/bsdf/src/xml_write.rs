@@ -33,6 +33,19 @@ pub(crate) struct Component<'a> {
     pub color: Option<&'a [Vec<f32>; 2]>,
 }
 
+/// What a file says of its product beside the tables, where it is not to say what the BSDF says of itself.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Label {
+    /// Name of the product.
+    pub name: Option<String>,
+    /// Who makes it.
+    pub manufacturer: Option<String>,
+    /// Thickness [m].
+    pub thickness_m: Option<f64>,
+    /// How the tables were made, and their statistical error.
+    pub comments: Option<String>,
+}
+
 /// Which cells a tree is written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Leaves {
@@ -48,18 +61,21 @@ impl Bsdf {
         self.xml_of(&self.components(BANDS[0]), Leaves::Merged)
     }
 
-    /// [`Self::to_xml`], with the luminous tables of another BSDF as the solar band beside it.
-    pub fn to_xml_with_solar(&self, solar: &Self) -> Result<String> {
-        if self.is_matrix() != solar.is_matrix() || !self.is_matrix() && self.structure != solar.structure {
-            return Err(Error::value(format!(
-                "visible tables are {}, solar ones {}; a file has one kind: expected both in the same basis",
-                self.structure, solar.structure
-            )));
-        }
+    /// [`Self::to_xml`] under another label, and with the luminous tables of another BSDF as the solar band beside it.
+    pub fn to_xml_as(&self, label: &Label, solar: Option<&Self>) -> Result<String> {
         let mut components = self.components(BANDS[0]);
-        let solar = solar.components(BANDS[1]);
-        components.extend(solar.into_iter().map(|c| Component { color: None, ..c }));
-        Ok(self.xml_of(&components, Leaves::Merged))
+        if let Some(solar) = solar {
+            if self.is_matrix() != solar.is_matrix() || !self.is_matrix() && self.structure != solar.structure
+            {
+                return Err(Error::value(format!(
+                    "visible tables are {}, solar ones {}; a file has one kind: expected both in the same basis",
+                    self.structure, solar.structure
+                )));
+            }
+            let solar = solar.components(BANDS[1]);
+            components.extend(solar.into_iter().map(|c| Component { color: None, ..c }));
+        }
+        Ok(self.text(&components, Leaves::Merged, label))
     }
 
     fn components(&self, band: &'static str) -> Vec<Component<'_>> {
@@ -74,13 +90,24 @@ impl Bsdf {
 
     /// The text of an LBNL XML file with other tables under this BSDF's name.
     pub(crate) fn xml_of(&self, components: &[Component], leaves: Leaves) -> String {
+        self.text(components, leaves, &Label::default())
+    }
+
+    fn text(&self, components: &[Component], leaves: Leaves, label: &Label) -> String {
         let mut out = String::new();
         // Writing to a string cannot fail.
-        let _ = self.write(&mut out, components, leaves);
+        let _ = self.write(&mut out, components, leaves, label);
         out
     }
 
-    fn write(&self, out: &mut String, components: &[Component], leaves: Leaves) -> std::fmt::Result {
+    fn write(
+        &self,
+        out: &mut String,
+        components: &[Component],
+        leaves: Leaves,
+        label: &Label,
+    ) -> std::fmt::Result {
+        let own = |other: &'_ Option<String>, own: &str| escaped(other.as_deref().unwrap_or(own));
         writeln!(out, r#"<?xml version="1.0" encoding="UTF-8"?>"#)?;
         writeln!(
             out,
@@ -91,14 +118,17 @@ impl Bsdf {
             "<WindowElementType>System</WindowElementType>\n<FileType>BSDF</FileType>\n<Checksum></Checksum>"
         )?;
         writeln!(out, "<Optical>\n<Layer>\n\t<Material>")?;
-        writeln!(out, "\t\t<Name>{}</Name>", escaped(&self.name))?;
-        writeln!(out, "\t\t<Manufacturer>{}</Manufacturer>", escaped(&self.manufacturer))?;
-        if let Some(thickness) = self.thickness_m {
-            writeln!(out, "\t\t<Thickness unit=\"Meter\">{thickness}</Thickness>")?;
+        writeln!(out, "\t\t<Name>{}</Name>", own(&label.name, &self.name))?;
+        writeln!(out, "\t\t<Manufacturer>{}</Manufacturer>", own(&label.manufacturer, &self.manufacturer))?;
+        if let Some(thickness) = label.thickness_m.or(self.thickness_m) {
+            // Millimetres, as WINDOW's own files: its readers take the number without looking at the unit. To the nanometre.
+            let millimetres = (thickness * 1e9).round() / 1e6;
+            writeln!(out, "\t\t<Thickness unit=\"Millimeter\">{millimetres}</Thickness>")?;
         }
         writeln!(out, "\t\t<DeviceType>Other</DeviceType>")?;
-        if !self.comments.is_empty() {
-            writeln!(out, "\t\t<Comments>{}</Comments>", escaped(&self.comments))?;
+        let comments = own(&label.comments, &self.comments);
+        if !comments.is_empty() {
+            writeln!(out, "\t\t<Comments>{comments}</Comments>")?;
         }
         writeln!(out, "\t</Material>")?;
         writeln!(

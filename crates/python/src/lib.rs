@@ -2,12 +2,14 @@
 
 mod arrays;
 mod bsdf;
+mod bsdf_files;
 mod bsdf_report;
 mod error;
 mod expressions;
 mod fabric;
 mod glare;
 mod goal;
+mod model;
 mod picture;
 mod render;
 mod scene;
@@ -24,8 +26,10 @@ mod _core {
     #[pymodule_export]
     use super::bsdf::PyBsdf;
     #[pymodule_export]
+    use super::bsdf_files::{bsdf_xml, convert_bsdf, load_solar};
+    #[pymodule_export]
     use super::bsdf_report::{
-        bsdf_report, bsdf_xml, exit_cells, incident_cells, instrument_seen, probe_directions, save_split,
+        bsdf_report, exit_cells, incident_cells, instrument_seen, probe_directions, save_split,
         through_interval,
     };
     #[pymodule_export]
@@ -37,6 +41,8 @@ mod _core {
     #[pymodule_export]
     use super::glare::{glare, glare_sources, position_indices};
     #[pymodule_export]
+    use super::model::{model_bsdf, model_value};
+    #[pymodule_export]
     use super::picture::PyPicture;
     #[pymodule_export]
     use super::render::{PyWorld, render, trace};
@@ -47,7 +53,7 @@ mod _core {
     #[pymodule_export]
     use super::synthetic::{exact_bsdf, synthetic_bsdf, synthetic_through};
     #[pymodule_export]
-    use super::system::{PyLayer, PySystem, bands_of, load_solar, slab_optics, two_band_xml, visible_share};
+    use super::system::{PyLayer, PySystem, slab_optics, visible_share};
 
     use pyo3::prelude::*;
 

@@ -5,9 +5,8 @@ use crate::bsdf::PyBsdf;
 use crate::error::{InputError, OrRaise};
 use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
-use std::{path::PathBuf, sync::Arc};
+use std::sync::Arc;
 use sunpeak_bsdf::{
-    Bsdf,
     synthetic::Basis,
     system::{Band, Curve, Layer, Pane, Panes, Shade, System, slab},
 };
@@ -107,25 +106,6 @@ impl PySystem {
 pub fn slab_optics(index: f64, pass: f64, cosine: f64) -> (f64, f64) {
     let [t, r] = slab(index, pass, cosine);
     (t, r)
-}
-
-/// The solar band of a file.
-#[pyfunction]
-pub fn load_solar(py: Python<'_>, path: PathBuf) -> PyResult<PyBsdf> {
-    let bsdf = py.detach(|| Bsdf::load_solar(&path)).or_raise()?;
-    Ok(PyBsdf(Arc::new(bsdf)))
-}
-
-/// Text of an LBNL XML file with both bands.
-#[pyfunction]
-pub fn two_band_xml(visible: &PyBsdf, solar: &PyBsdf) -> PyResult<String> {
-    visible.0.to_xml_with_solar(&solar.0).or_raise()
-}
-
-/// Names of all bands of the file that a BSDF was read from.
-#[pyfunction]
-pub fn bands_of(bsdf: &PyBsdf) -> Vec<String> {
-    bsdf.0.bands.clone()
 }
 
 /// Share of the visible wavelengths in the sun's energy [-].

@@ -8,7 +8,10 @@ import typer
 
 from sunpeak.blinds import Blind
 from sunpeak.bsdf_plot import Kind, is_picture, plot_bsdf
+from sunpeak.cli.bsdf_convert import convert
 from sunpeak.cli.bsdf_fabric import fabric
+from sunpeak.cli.bsdf_formula import HELP as FORMULA_HELP
+from sunpeak.cli.bsdf_formula import formula
 from sunpeak.cli.bsdf_sheets import mesh, perforated
 from sunpeak.cli.bsdf_show import show
 from sunpeak.cli.bsdf_system import system
@@ -23,6 +26,8 @@ app.command("fabric")(fabric)
 app.command("mesh")(mesh)
 app.command("perforated")(perforated)
 app.command("system")(system)
+app.command("formula", help=FORMULA_HELP)(formula)
+app.command("convert")(convert)
 
 File = Annotated[Path, typer.Argument(help="LBNL XML file, or the folder of a split.")]
 Instrument = Annotated[

@@ -7,8 +7,9 @@ use super::{
 use crate::{
     bsdf::{Bsdf, Sides},
     distribution::Distribution,
-    exact_peak::{Delta, into_basis, with_exact_peak},
+    exact_peak::{Delta, with_exact_peak},
     kernel::{Kernel, Spread},
+    layout::Layout,
     table::{Columns, Matrix, Table},
     tree::Tree,
     xml::Document,
@@ -111,14 +112,15 @@ fn diffuse(reflectance: f64, basis: Basis) -> Table {
 type Planes = (Table, Option<[Vec<f32>; 2]>);
 
 fn transmission(product: &dyn Product, basis: Basis, seen_by: &Goniophotometer) -> Planes {
-    let [incident, exiting] = basis.divisions();
+    let layout = basis.layout();
+    let Layout { incident, exiting } = layout.clone();
     let averages =
         Averages { product, incident, exiting, blur: seen_by.blur(), isotropic: basis.is_isotropic() };
     let columns: Vec<[Vec<f32>; 3]> =
         (0..averages.incident.len()).into_par_iter().map(|i| averages.column(i, seen_by)).collect();
     let plane = |k: usize| {
         let value = |column: usize, cell: usize| columns[column][k].get(cell).copied().unwrap_or(0.0);
-        into_basis(basis, value)
+        layout.table(value)
     };
     let color = product.tint().map(|_| [plane(1).into_values(), plane(2).into_values()]);
     (plane(0), color)

@@ -11,7 +11,7 @@ use super::{
 use crate::{
     bsdf::{Bsdf, Sides},
     distribution::Distribution,
-    exact_peak::{Delta, into_basis, with_exact_peak},
+    exact_peak::{Delta, with_exact_peak},
     synthetic::Basis,
     table::Columns,
     xml::Document,
@@ -95,9 +95,9 @@ impl System {
         let reflection = |from: usize| {
             let deltas = delta(&|o| o.r[from]);
             let value = value(from, from);
-            let table = into_basis(basis, |column, cell| {
-                (f64::from(value(column, cell)) + deltas[column].at(cell)) as f32
-            });
+            let table = basis
+                .layout()
+                .table(|column, cell| (f64::from(value(column, cell)) + deltas[column].at(cell)) as f32);
             Some(Arc::new(Distribution::new(table, None)))
         };
         let sides = Sides {
