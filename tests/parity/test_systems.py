@@ -10,7 +10,7 @@ import sunpeak as sp
 from sunpeak.systems import Band
 
 THETA_DEG = np.arange(0.0, 90.0, 10.0)
-# pyWinCalc solves systems at the wavelengths of the panes and interpolates what comes out: fine steps.
+# Fine steps, so that it does not matter where the two programs interpolate.
 UM = tuple(np.round(np.arange(0.3, 2.501, 0.02), 3))
 
 
