@@ -20,12 +20,12 @@ SIDE = 32
 
 def hemisphere(up: float) -> tuple[Floats, Floats]:
     """Directions of a hemisphere and their weights cos(theta) d omega: Gauss in theta, equal steps in azimuth."""
-    nodes, weights = np.polynomial.legendre.leggauss(200)
+    nodes, weights = np.polynomial.legendre.leggauss(140)
     theta = (nodes + 1) * math.pi / 4
-    phi = (np.arange(720) + 0.5) * math.pi / 360
+    phi = (np.arange(360) + 0.5) * math.pi / 180
     t, p = np.meshgrid(theta, phi, indexing="ij")
     w = np.stack([np.sin(t) * np.cos(p), np.sin(t) * np.sin(p), up * np.cos(t)], axis=-1).reshape(-1, 3)
-    areas = weights[:, None] * math.pi / 4 * np.sin(t) * np.cos(t) * math.pi / 360
+    areas = weights[:, None] * math.pi / 4 * np.sin(t) * np.cos(t) * math.pi / 180
     return w, areas.reshape(-1)
 
 

@@ -55,12 +55,12 @@ fn directions() -> Vec<Vec3> {
 
 const WAYS: [(&str, &str); 9] = [
     ("klems", "t4-64"),
-    ("t4-256", "klems-half"),
+    ("t4-64", "klems-half"),
     ("klems", "klems-quarter"),
     ("t4-64", "t4-256"),
-    ("t4-256", "t3-256"),
+    ("t4-64", "t3-256"),
     ("klems", "t3-64"),
-    ("t3-256", "klems"),
+    ("t3-64", "klems"),
     ("t3-256", "t4-64"),
     ("t3-256", "t3-64"),
 ];
