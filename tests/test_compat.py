@@ -224,6 +224,19 @@ def test_scene_check_lists_all_mistakes(tmp_path: Path, sunpeak: CommandLine) ->
     lines = [line for line in answer.out.splitlines() if line.startswith("error: ")]
     expected = ["bad.rad:2:1", "bad.rad:2:6", "bad.rad:3:1", "bad.rad:5:1", "bad.rad:6:1"]
     assert sorted(line.split()[1].rstrip(":") for line in lines) == expected
+    (tmp_path / "functions.rad").write_text(
+        "void brightfunc p 2 stripes nothere.cal 0 0\np plastic m 0 0 5 .5 .5 .5 0 0\nm sphere s 0 0 4 0 0 0 1\n"
+        "void colorfunc q 4 1 wrong(Px) 1 wrong.cal 0 0\nq plastic n 0 0 5 .5 .5 .5 0 0\nn sphere t 0 0 4 0 0 0 1\n"
+    )
+    (tmp_path / "wrong.cal").write_text("right(x) = x;\nwrong(x) = x + ;\n")
+    answer = sunpeak("scene", "check", "functions.rad", folder=tmp_path, expect=1)
+    missing, wrong = [line for line in answer.out.splitlines() if line.startswith("error: ")]
+    assert missing.startswith(
+        'error: functions.rad:1:1: brightfunc "p": function file: cannot find the file "nothere.cal"'
+    )
+    assert "looked for nothere.cal" in missing
+    assert "functions.rad:4:1: colorfunc" in wrong
+    assert "wrong.cal:2:16: expected" in wrong
     (tmp_path / "good.rad").write_text(ROOM + "void plastic spare 0 0 5 .5 .5 .5 0 0\n")
     answer = sunpeak("scene", "check", "good.rad", "--json", folder=tmp_path)
     assert '"errors": []' in answer.out
