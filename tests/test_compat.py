@@ -114,9 +114,9 @@ def test_an_instance_reads_our_octrees(room: Path) -> None:
         (["rpict", "-x", "0", "room.oct"], "a picture needs at least one pixel each way"),
         (["rpict", "-vth", "-vh", "200", "room.oct"], "the view cannot be used"),
         (["rtrace"], "rtrace: missing octree argument"),
-        (["rtrace", "-ort", "room.oct"], "-ort: Sunpeak's rtrace does not give 'r'"),
+        (["rtrace", "-ort", "room.oct"], "-ort: 't' asks for the tree of rays"),
         (["rtrace", "-fz", "room.oct"], "command line error at '-fz'"),
-        (["rtrace", "-fac", "-oL", "room.oct"], "-fc: expected -ov"),
+        (["rtrace", "-fac", "-oL", "room.oct"], "-fc: expected -ov, -or or -ox"),
         (["rtrace", "-ff", "-os", "room.oct"], "-os: names are text; expected -fa"),
         (["oconv"], "oconv: no scene"),
         (["oconv", "none.rad"], "none.rad: cannot open scene file"),
@@ -211,7 +211,9 @@ def test_headers_are_read_and_changed(room: Path) -> None:
     assert program("getinfo", "-r", "A=3", folder=room, data=text) == text.replace(b"A=1", b"A=3")
     assert program("getinfo", "-", folder=room, data=text) == b"1 2\n"
     assert program("getinfo", "-c", "tr", "1", "7", folder=room, data=text).endswith(b"tr 1 7\n\n7 2\n")
-    assert program("getinfo", "-d", "none", "room.oct", folder=room, says="none: cannot open") == b"room.oct:"
+    cube = program("getinfo", "-d", "none", "room.oct", folder=room, says="none: cannot open")
+    # 4 m by 5 m by 3 m, in the middle of the cube that oconv lays around it.
+    assert cube == b"room.oct: -0.50001 -1e-05 -1.00001 5.00002\n"
 
 
 def test_scene_check_lists_all_mistakes(tmp_path: Path, sunpeak: CommandLine) -> None:

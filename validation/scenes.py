@@ -61,7 +61,7 @@ class Case:
     bounces: int = 2
     sky: str = ""
     changes: tuple[tuple[str, str, str], ...] = ()
-    """File, text in it, and what stands there instead: the scene without what the programs are known to treat differently."""
+    """File, text in it, and what stands there instead: the scene without what the programs treat differently."""
 
 
 def rif(name: str, view: str, *files: str, bounces: int = 1) -> Case:
@@ -85,6 +85,10 @@ MESH = (
     "!xform -n plainclothes -s 1.5 -rx 90 -rz -80 -t 1 0 0 -a 9 -rz 40 -i 1 -t -5 2.5 0 ./woman.rad",
     "!xform -m chrome -n shiny -s 1.5 -rx 90 -rz -105 -t 1 0 0 -rz 20 -a 9 -rz 40 -i 1 -t -5 2.5 0 ./woman.rad",
     "rect_fixture.rad",
+)
+SPECTRA = (
+    *("basic.mat", "spectral.mat", "gold.mat", "diorama_walls.rad", "closed_end.rad", "front_cap.rad"),
+    *("rect_fixture.rad", "spectral_objs.rad"),
 )
 LAMP_THAT_NOBODY_LOOKS_FOR = (
     "rect_fixture.rad",
@@ -145,8 +149,8 @@ CASES = [
         "!xform -m gold ./vase.rad", "sunset_sky.rad", "prism1.rad"),
     rif("prism2", PRISM_VIEW, "basic.mat", "gold.mat", "diorama_walls.rad", "rect_opening.rad", "front_cap.rad",
         "!xform -m gold ./vase.rad", "sunset_sky.rad", "prism2.rad"),
-    rif("spectra", "fish.vf", "basic.mat", "spectral.mat", "gold.mat", "diorama_walls.rad", "closed_end.rad",
-        "front_cap.rad", "rect_fixture.rad", "spectral_objs.rad"),
+    rif("spectra", "fish.vf", *SPECTRA),
+    Case("spectra_glow", "radiance-renders", SPECTRA, "-vf fish.vf", 1, changes=(LAMP_THAT_NOBODY_LOOKS_FOR,)),
     rif("tfunc", "inside.vf", *WALLS, "rect_opening.rad", "front_cap.rad", "ball_in_cube.rad", "sunset_sky.rad",
         "illum_tfunc.rad"),
     # The same by the sun alone: function materials of Radiance scatter the light of sources, not that of the sky.

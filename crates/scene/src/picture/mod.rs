@@ -13,7 +13,7 @@ mod spectral;
 mod write;
 
 pub use errors::BlockErrors;
-pub(crate) use spectral::SpectralPicture;
+pub use spectral::SpectralPicture;
 
 use crate::View;
 use sunpeak_core::{Rgb, Vec3, luminance_cd_m2};

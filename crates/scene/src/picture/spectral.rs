@@ -20,8 +20,10 @@ const MOST_COMPONENTS: usize = 1024;
 
 /// A picture of spectra.
 #[derive(Clone, Debug)]
-pub(crate) struct SpectralPicture {
+pub struct SpectralPicture {
+    /// Columns.
     pub width: usize,
+    /// Rows.
     pub height: usize,
     /// Height over width of a pixel.
     pub aspect: f64,
@@ -41,6 +43,14 @@ impl SpectralPicture {
     pub fn load(path: &Path) -> Result<Self> {
         let file = File::open(path).map_err(|source| Error::io(path, source))?;
         Self::read(BufReader::new(file), &path.to_string_lossy())
+    }
+
+    /// The same from the bytes of a file; error messages call it `name`.
+    ///
+    /// # Errors
+    /// As [`Self::load`].
+    pub fn decode(bytes: &[u8], name: &str) -> Result<Self> {
+        Self::read(bytes, name)
     }
 
     fn read(file: impl BufRead, name: &str) -> Result<Self> {
@@ -121,7 +131,7 @@ mod tests {
         "#?RADIANCE\nNCOMP=4\nWAVELENGTH_SPLITS= 780 588 480 380\nFORMAT=Radiance_spectra\n\n";
 
     fn read(header: &str, size: &str, pixels: &[u8]) -> Result<SpectralPicture> {
-        SpectralPicture::read([header.as_bytes(), size.as_bytes(), pixels].concat().as_slice(), "s.hsr")
+        SpectralPicture::decode(&[header.as_bytes(), size.as_bytes(), pixels].concat(), "s.hsr")
     }
 
     #[test]
