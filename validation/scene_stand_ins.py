@@ -5,10 +5,12 @@ font, data.
 """
 
 import math
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
+import pyradiance
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import TextPath
 
@@ -35,6 +37,35 @@ def make_stand_ins(folder: Path, radiance: Radiance) -> None:
         (folder / f"{name}.rtm").write_bytes(mesh)
     (folder / "car.rad").write_text(CAR)
     (folder / "porsche.octf").write_bytes(radiance.run("oconv", "-f", "car.rad", folder=folder))
+
+
+def slats_table(blind: Path) -> bytes:
+    """The BSDF of a blind's slats, as Radiance finds it by rays: LBNL XML, Klems basis.
+
+    The scene file has slats and a pane before y = 0; the slats are turned so that the room is at the front.
+    """
+    slats = "\n".join(" ".join(p) for p in primitives(blind.read_text()) if not {"Glazing", "glass"} & set(p[:3]))
+    turned = pyradiance.Xform(slats.encode()).rotatex(-90).rotatey(180).translate(0, 0, -SLATS_DEPTH)()
+    # Ten of them, far from their ends.
+    box = pyradiance.genbsdf.SamplingBox(-4, -3, 1.3, 1.3 + 10 * SLATS_SPACING, -SLATS_DEPTH, 0)
+    table = pyradiance.genbsdf.generate_bsdf(turned, nsamp=600, dim=box, params=["-ab", "5", "-ad", "64"])
+    xml: bytes = pyradiance.genbsdf.generate_xml(sol_results=table, vis_results=table)
+    return xml
+
+
+SLATS_DEPTH, SLATS_SPACING = 0.0487, 0.030099
+"""Of the blind in `tutorial-room/blinds` [m]."""
+
+
+def primitives(text: str) -> Iterator[list[str]]:
+    """The words of each primitive of a scene file without commands."""
+    words = iter("\n".join(line.split("#")[0] for line in text.splitlines()).split())
+    for modifier in words:
+        primitive = [modifier, next(words), next(words)]
+        for _ in range(3):
+            count = next(words)
+            primitive += [count, *(next(words) for _ in range(int(count)))]
+        yield primitive
 
 
 CAR = """

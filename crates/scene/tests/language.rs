@@ -210,8 +210,8 @@ fn wrong_texts_are_said_to_be_wrong_and_where() {
             "aBSDF \"b\": cannot find the file \"no.xml\"; looked for no.xml (used by",
         ),
         (
-            "void aBSDF b 5 no.xml Nx 0 1 . 0 0 b sphere s 0 0 4 0 0 0 1".into(),
-            "the up vector varies over the surface: expected a constant",
+            "void BSDF b 6 Nx no.xml 0 0 1 . 0 0 b sphere s 0 0 4 0 0 0 1".into(),
+            "the thickness varies over the surface: expected a constant",
         ),
         (
             "void brightfunc f 2 skybr skybright.cal 0 7 1 1 1 1 0 0 1 f sphere s 0 0 4 0 0 0 1".into(),
