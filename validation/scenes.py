@@ -91,6 +91,7 @@ SPECTRA = (
     *("basic.mat", "spectral.mat", "gold.mat", "diorama_walls.rad", "closed_end.rad", "front_cap.rad"),
     *("rect_fixture.rad", "spectral_objs.rad"),
 )
+MIST = (*WALLS, "closed_end.rad", "gymbal.rad", "mist.rad", "spotlights.rad", "spotcones.rad")
 LAMP_THAT_NOBODY_LOOKS_FOR = (
     "rect_fixture.rad",
     "lum_dist light lum_bright\n0\n0\n3\t20 20 20",
@@ -143,8 +144,10 @@ CASES = [
     rif("mirror", "fish.vf", *WALLS, "closed_end.rad", "front_cap.rad", "glass_pane.rad", "antimatter_portal.rad",
         "bubble_in_cube.rad", "mirror.rad", "sunset_sky.rad"),
     # Its .rif makes the cap before the camera invisible from behind (-bv-): it is left out.
-    rif("mist", MIST_VIEW, *WALLS, "closed_end.rad", "gymbal.rad", "mist.rad", "spotlights.rad", "spotcones.rad",
-        bounces=0),
+    rif("mist", MIST_VIEW, *MIST, bounces=0),
+    # The same with a fiftieth of the mist, in which light is scattered once at most.
+    Case("mist_thin", "radiance-renders", MIST, MIST_VIEW, 0,
+         changes=(("mist.rad", "7 .1 .1 .4", "7 .002 .002 .008"),)),
     rif("mixtex", DISKS_VIEW, "basic.mat", "mixtex.mat", "sunset_sky.rad", "glass_pane.rad", "diorama_walls.rad",
         "rect_opening.rad", "front_cap.rad", "disks.rad", "constellation.rad"),
     rif("patterns", DISKS_VIEW, "basic.mat", "patterns.mat", "diorama_walls.rad", "closed_end.rad", "front_cap.rad",
