@@ -66,7 +66,7 @@ mod world;
 
 pub use film::{PictureJudge, render_picture, render_until};
 pub use options::{DEFAULT_MAX_DEPTH, DEFAULT_SAMPLES, RenderOptions, WorldOptions};
-pub use probe::{FirstSurface, first_surfaces};
+pub use probe::{FirstDeltas, FirstSurface, first_deltas, first_surfaces};
 pub use sensor::{trace_irradiance, trace_radiance};
 pub use world::World;
 

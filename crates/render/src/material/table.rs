@@ -15,6 +15,7 @@ use super::{Arrival, Scattering, Smooth, SmoothValue, smooth::SmoothSample};
 use std::{f64::consts::FRAC_1_PI, sync::Arc};
 use sunpeak_bsdf::{Bsdf, Mode, PeakRule};
 use sunpeak_core::{Frame, Rgb, Vec3, luminance, warp};
+use sunpeak_scene::Orientation;
 
 /// The material.
 #[derive(Clone, Debug)]
@@ -25,8 +26,7 @@ pub(crate) struct Table {
     /// What it stands for reaches this far behind its front, or, negative, before it [m].
     pub thickness: f64,
     pub rule: PeakRule,
-    /// Up vector, world axes.
-    pub up: Vec3,
+    pub up: Orientation,
     /// Is the frame left-handed?
     pub mirrored: bool,
     pub front_diffuse: Rgb,
@@ -37,8 +37,9 @@ pub(crate) struct Table {
 impl Table {
     /// z the front normal, y up, x = y cross z, or its opposite in a mirrored instance. Where a curved surface's normal runs
     /// along the up vector, any frame serves.
-    fn frame(&self, normal: Vec3) -> Frame {
-        let frame = Frame::from_normal_up(normal, self.up).unwrap_or_else(|| Frame::from_normal(normal));
+    fn frame(&self, arrival: &Arrival) -> Frame {
+        let (normal, up) = (arrival.normal, arrival.orientation(&self.up));
+        let frame = Frame::from_normal_up(normal, up).unwrap_or_else(|| Frame::from_normal(normal));
         if self.mirrored { Frame { x: -frame.x, ..frame } } else { frame }
     }
 
@@ -67,11 +68,11 @@ impl Table {
         if self.rule == PeakRule::Off || (self.is_reference_rule() && !direct) {
             return Rgb::ZERO;
         }
-        self.bsdf.through(self.frame(arrival.normal).to_local(-arrival.direction), self.rule) * arrival.tint
+        self.bsdf.through(self.frame(arrival).to_local(-arrival.direction), self.rule) * arrival.tint
     }
 
     pub fn scatter(&self, arrival: &Arrival, view: bool) -> Scattering<'_> {
-        let frame = self.frame(arrival.normal);
+        let frame = self.frame(arrival);
         let w_in = frame.to_local(-arrival.direction);
         let goes_straight = self.rule == PeakRule::Split || (self.is_reference_rule() && view);
         let straight =
