@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from sunpeak.comfort import glare
     from sunpeak.expressions import evaluate
     from sunpeak.fabrics import Fabric, RollerBlind
+    from sunpeak.generation import GeneratedBsdf, GeneratedSide, generate_bsdf, straight_transmittance
     from sunpeak.glare_report import GlareReport, GlareSource, ZoneLuminances
     from sunpeak.glare_rules import GlareRules, RulesName, Task
     from sunpeak.pictures import ExactSource, Picture
@@ -33,6 +34,8 @@ __all__ = [
     "Evidence",
     "ExactSource",
     "Fabric",
+    "GeneratedBsdf",
+    "GeneratedSide",
     "GlareReport",
     "GlareRules",
     "GlareSource",
@@ -56,10 +59,12 @@ __all__ = [
     "check_scene",
     "direction",
     "evaluate",
+    "generate_bsdf",
     "glare",
     "plot_bsdf",
     "render",
     "side_of_ray",
+    "straight_transmittance",
     "sun_position",
     "trace",
 ]
@@ -73,6 +78,10 @@ _HOMES = {
     "evaluate": "expressions",
     "Fabric": "fabrics",
     "RollerBlind": "fabrics",
+    "GeneratedBsdf": "generation",
+    "GeneratedSide": "generation",
+    "generate_bsdf": "generation",
+    "straight_transmittance": "generation",
     "GlareReport": "glare_report",
     "GlareSource": "glare_report",
     "ZoneLuminances": "glare_report",

@@ -15,6 +15,8 @@
 pub mod basis;
 mod bsdf;
 mod cache;
+pub mod codec;
+pub mod counted;
 mod distribution;
 mod incident;
 mod kernel;
@@ -40,3 +42,4 @@ pub use peak::{ColumnPeak, Instrument, PeakRule, Split};
 pub use picture_cells::{ExitCell, IncidentCell};
 pub use proposal::Oriented;
 pub use split_files::SplitFiles;
+pub use xml_write::Production;

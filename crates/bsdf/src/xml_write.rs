@@ -25,6 +25,15 @@ pub(crate) struct Component<'a> {
     pub color: Option<&'a [Vec<f32>; 2]>,
 }
 
+/// What a file says about how its tables were made.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Production {
+    /// A comment at the head of the file.
+    pub comment: String,
+    /// Width, height and thickness of the product [m].
+    pub size: Option<[f64; 3]>,
+}
+
 /// Which cells a tree is written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Leaves {
@@ -37,24 +46,42 @@ pub(crate) enum Leaves {
 impl Bsdf {
     /// The text of an LBNL XML file with the tables of this BSDF.
     pub fn to_xml(&self) -> String {
+        self.to_xml_with(&Production::default())
+    }
+
+    /// The same, and how the tables were made.
+    pub fn to_xml_with(&self, production: &Production) -> String {
         let own = self.own_distributions();
         let components: Vec<Component> = own
             .into_iter()
             .map(|(direction, d)| Component { direction, luminous: d.luminous(), color: d.color() })
             .collect();
-        self.xml_of(&components, Leaves::Merged)
+        self.text(&components, Leaves::Merged, production)
     }
 
     /// The text of an LBNL XML file with other tables under this BSDF's name.
     pub(crate) fn xml_of(&self, components: &[Component], leaves: Leaves) -> String {
+        self.text(components, leaves, &Production::default())
+    }
+
+    fn text(&self, components: &[Component], leaves: Leaves, production: &Production) -> String {
         let mut out = String::new();
         // Writing to a string cannot fail.
-        let _ = self.write(&mut out, components, leaves);
+        let _ = self.write(&mut out, components, leaves, production);
         out
     }
 
-    fn write(&self, out: &mut String, components: &[Component], leaves: Leaves) -> std::fmt::Result {
+    fn write(
+        &self,
+        out: &mut String,
+        components: &[Component],
+        leaves: Leaves,
+        production: &Production,
+    ) -> std::fmt::Result {
         writeln!(out, r#"<?xml version="1.0" encoding="UTF-8"?>"#)?;
+        if !production.comment.is_empty() {
+            writeln!(out, "<!-- {} -->", in_comment(&production.comment))?;
+        }
         writeln!(
             out,
             r#"<WindowElement xmlns="http://windows.lbl.gov" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xsi:schemaLocation="http://windows.lbl.gov/BSDF-v1.4.xsd">"#
@@ -63,7 +90,13 @@ impl Bsdf {
         writeln!(out, "<Optical>\n<Layer>\n\t<Material>")?;
         writeln!(out, "\t\t<Name>{}</Name>", escaped(&self.name))?;
         writeln!(out, "\t\t<Manufacturer>{}</Manufacturer>", escaped(&self.manufacturer))?;
-        writeln!(out, "\t\t<DeviceType>Other</DeviceType>\n\t</Material>")?;
+        writeln!(out, "\t\t<DeviceType>Other</DeviceType>")?;
+        if let Some([width, height, thickness]) = production.size {
+            for (name, value) in [("Thickness", thickness), ("Width", width), ("Height", height)] {
+                writeln!(out, "\t\t<{name} unit=\"meter\">{value}</{name}>")?;
+            }
+        }
+        writeln!(out, "\t</Material>")?;
         writeln!(
             out,
             "\t<DataDefinition>\n\t\t<IncidentDataStructure>{}</IncidentDataStructure>",
@@ -113,6 +146,18 @@ impl Bsdf {
             })
             .collect()
     }
+}
+
+/// A comment has no two hyphens in a row, and none at its end.
+fn in_comment(text: &str) -> String {
+    let printable = |c: char| if c.is_control() && c != '\n' { ' ' } else { c };
+    let mut inside: String = text.chars().map(printable).collect();
+    inside = inside.replace("--", "- -");
+    if inside.ends_with('-') {
+        inside.push(' ');
+    }
+    // Three in a row leave two.
+    inside.replace("--", "- -")
 }
 
 fn escaped(text: &str) -> String {

@@ -9,6 +9,7 @@ import typer
 from sunpeak.blinds import Blind
 from sunpeak.bsdf_plot import Kind, is_picture, plot_bsdf
 from sunpeak.cli.bsdf_fabric import fabric
+from sunpeak.cli.bsdf_generate import generate
 from sunpeak.cli.bsdf_show import show
 from sunpeak.cli.options import Quiet
 from sunpeak.cli.output import emit_json, note
@@ -18,6 +19,7 @@ from sunpeak.scattering import Bsdf, Peak, side_of_ray
 
 app = typer.Typer(no_args_is_help=True, help="Look into a BSDF file.")
 app.command("fabric")(fabric)
+app.command("generate")(generate)
 
 File = Annotated[Path, typer.Argument(help="LBNL XML file, or the folder of a split.")]
 Instrument = Annotated[

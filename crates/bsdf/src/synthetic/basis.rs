@@ -74,7 +74,7 @@ impl Basis {
     }
 
     /// The patches of a matrix basis.
-    pub(super) fn patches(self) -> Option<Arc<AngleBasis>> {
+    pub fn patches(self) -> Option<Arc<AngleBasis>> {
         let name = match self {
             Self::KlemsFull => "LBNL/Klems Full",
             Self::KlemsHalf => "LBNL/Klems Half",
@@ -85,7 +85,7 @@ impl Basis {
     }
 
     /// The incident division and the exiting one.
-    pub(super) fn divisions(self) -> [Columns; 2] {
+    pub fn divisions(self) -> [Columns; 2] {
         match (self, self.patches()) {
             (_, Some(basis)) => [Columns::Patches(basis.clone()), Columns::Patches(basis)],
             (Self::TensorTree3 { side }, _) => [Columns::Radial { side }, Columns::Square { side }],
