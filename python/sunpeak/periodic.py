@@ -51,10 +51,11 @@ class Slats:
         In the plane across the slats a ray climbs by tan O = y / z; a slat hides `width |cos(tilt) tan O - sin(tilt)|`
         of each spacing from it, with the sign of the tilt as the slats fall towards the room.
         """
-        x, y, z = rows(directions).T
+        _, y, z = rows(directions).T
         tilt = math.radians(self.tilt_deg)
         hidden = self.width / self.spacing * np.abs(math.cos(tilt) * y / z - math.sin(tilt))
-        return np.maximum(0.0, 1.0 - hidden)
+        through: Floats = np.maximum(0.0, 1.0 - hidden)
+        return through
 
 
 @dataclass(frozen=True)
@@ -124,7 +125,8 @@ class Sheet:
         x, y, z = rows(directions).T
         shift = np.minimum(1.0, self.thickness / self.diameter * np.hypot(x, y) / np.abs(z))
         open_area = math.pi / 4 * (self.diameter / self.pitch) ** 2
-        return open_area * 2 / math.pi * (np.arccos(shift) - shift * np.sqrt(1 - shift**2))
+        through: Floats = open_area * 2 / math.pi * (np.arccos(shift) - shift * np.sqrt(1 - shift**2))
+        return through
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ const SETS: u64 = 8;
 
 /// Walks that set out where a ray meets a surface. More share the ray's first part and its point; their directions are distributed
 /// well together.
-const BRANCHES: u64 = 4;
+const BRANCHES: u64 = 8;
 
 /// Sets of straight rays alone, at most, over those of all rays: they are short, and what goes straight lands in one cell.
 const MOST_STRAIGHT: usize = 4;
@@ -241,9 +241,8 @@ impl Tracer<'_> {
                 straight_on += straight(self.world, self.cell, ray, &mut sampler);
             } else {
                 // Each surface on a straight way has points of its own.
-                let branch = |k: u64| {
-                    let surface = (k / BRANCHES) << 56;
-                    Sampler::new(self.effort.seed, second ^ surface, index * BRANCHES + k % BRANCHES)
+                let branch = |surface: u64, number: u64| {
+                    Sampler::new(self.effort.seed, second ^ (surface << 56), index * BRANCHES + number)
                 };
                 straight_on += fork(self.world, self.cell, ray, &mut sampler, BRANCHES, branch, count);
             }
