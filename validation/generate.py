@@ -1,9 +1,9 @@
 """BSDFs from geometry against closed forms and Radiance. Writes `generate.json` beside; `generate.md` tells it.
 
-usage: python validation/generate.py [direct] [equal-time] [tree]      (all: about half an hour of one core)
+usage: python validation/generate.py [slats] [sheet] [tree] [direct]    (all: about ten minutes of one core)
 
 - direct: what goes straight through slats, sheets and screens, against closed forms in 50 directions each.
-- equal-time: the same slats and the same sheet by our generator and by pyradiance's `generate_bsdf` with its default
+- slats, sheet: the same product by our generator and by pyradiance's `generate_bsdf` with its default
   parameters, at the same processor time; converged runs of both; our file read by Radiance's library.
 - tree: an anisotropic tensor tree of 64^4 cells of slats, its through transmittance against the closed form.
 """
@@ -32,13 +32,15 @@ from sunpeak.scattering import Mode
 TARGET = Path(__file__).with_suffix(".json")
 
 DIRECTIONS, LEAST_THROUGH = 50, 0.01
-DIRECT_RAYS = 1 << 20
+DIRECT_RAYS = 1 << 19
 
-RADIANCE_SAMPLES = 60
+RADIANCE_SAMPLES = 24
 """Rays a column of pyradiance's run; everything else as it comes: -ab 5 -ad 700 -lw 3e-6."""
 
-CONVERGED_RADIANCE = 150, ["-ab", "20", "-lw", "1e-7"]
-CONVERGED_SAMPLES = 1 << 17
+CONVERGED_RADIANCE = 60, ["-ab", "20", "-lw", "1e-7"]
+CONVERGED_SAMPLES = 1 << 16
+
+TREE_SAMPLES = 1 << 11
 
 RINGS = ((5, 1), (15, 8), (25, 16), (35, 20), (45, 24), (55, 24), (65, 24), (75, 16), (90, 12))
 """Upper theta [deg] and azimuths of LBNL/Klems Full."""
@@ -241,49 +243,53 @@ def in_radiance(made: sp.GeneratedBsdf, path: Path) -> dict[str, float]:
     }
 
 
-def equal_time(folder: Path) -> dict[str, Any]:
-    """The same products through both generators."""
-    slats, sheet = Slats(), Sheet(corners=48)
-    cases = {
-        "slats": (slats, slats.radiance(), slats.radiance(length=10, slats=101)),
-        "sheet": (sheet, sheet.radiance(), sheet.radiance(repeat=15)),
+def slats_at_equal_time(folder: Path) -> dict[str, Any]:
+    """Slats through both generators."""
+    slats = Slats()
+    return equal_time(folder, slats, slats.radiance(), slats.radiance(length=10, slats=101))
+
+
+def sheet_at_equal_time(folder: Path) -> dict[str, Any]:
+    """A perforated sheet through both generators."""
+    sheet = Sheet(corners=48)
+    return equal_time(folder, sheet, sheet.radiance(), sheet.radiance(repeat=15))
+
+
+def equal_time(folder: Path, product: Slats | Sheet, cell: str, large: str) -> dict[str, Any]:
+    """The same product through both generators: one cell of it by ours, a large piece by Radiance's."""
+    world = loaded(cell, folder, "cell.rad")
+    scene = folder / "large.rad"
+    scene.write_text(large, encoding="utf-8")
+
+    def generate(samples: int, seed: int, sides: Any = ("front", "back")) -> Any:
+        return sp.generate_bsdf(
+            world, "klems", box=product.box, periodic=True, samples=samples, error=1.0, seed=seed, sides=sides
+        )
+
+    theirs, their_time = timed(lambda: by_radiance(scene, product.box, RADIANCE_SAMPLES, None, True))
+    their_tables = radiance_tables(theirs, folder)
+    # As many rays as take no longer.
+    _, pilot = timed(lambda: generate(1 << 12, 9))
+    samples = int(their_time / pilot * (1 << 12) * 0.95)
+    ours, our_time = timed(lambda: generate(samples, 1))
+    truth, truth_time = timed(lambda: generate(CONVERGED_SAMPLES, 2, ("back",)))
+    samples_best, params = CONVERGED_RADIANCE
+    best, best_time = timed(lambda: by_radiance(scene, product.box, samples_best, params, False))
+    best_tables = radiance_tables(best, folder)
+    our_tables, true_tables = (of_back(tables_of(made.bsdf.evaluate)) for made in (ours, truth))
+    return {
+        "processor_time_radiance_s": round(their_time, 1),
+        "processor_time_ours_s": round(our_time, 1),
+        "samples_radiance": RADIANCE_SAMPLES,
+        "samples_ours": samples,
+        "processor_time_converged_ours_s": round(truth_time, 1),
+        "processor_time_converged_radiance_s": round(best_time, 1),
+        "against_our_converged": differences(our_tables, of_back(their_tables), true_tables),
+        "against_radiance_converged": differences(our_tables, of_back(their_tables), of_back(best_tables)),
+        "converged_apart": differences(true_tables, of_back(their_tables), of_back(best_tables)),
+        "hemispherical": hemispheres(ours, truth, best_tables, their_tables),
+        "read_by_radiance": in_radiance(ours, folder / "ours.xml"),
     }
-    found = {}
-    for name, (product, cell, large) in cases.items():
-        world = loaded(cell, folder, "cell.rad")
-        scene = folder / "large.rad"
-        scene.write_text(large, encoding="utf-8")
-
-        def generate(samples: int, seed: int, sides: Any = ("front", "back"), w: Any = world, p: Any = product) -> Any:
-            return sp.generate_bsdf(
-                w, "klems", box=p.box, periodic=True, samples=samples, error=1.0, seed=seed, sides=sides
-            )
-
-        theirs, their_time = timed(lambda s=scene, p=product: by_radiance(s, p.box, RADIANCE_SAMPLES, None, True))
-        their_tables = radiance_tables(theirs, folder)
-        # As many rays as take no longer.
-        _, pilot = timed(lambda g=generate: g(1 << 12, 9))
-        samples = int(their_time / pilot * (1 << 12) * 0.95)
-        ours, our_time = timed(lambda g=generate, n=samples: g(n, 1))
-        truth, truth_time = timed(lambda g=generate: g(CONVERGED_SAMPLES, 2, ("back",)))
-        samples_best, params = CONVERGED_RADIANCE
-        best, best_time = timed(lambda s=scene, p=product, n=samples_best, o=params: by_radiance(s, p.box, n, o, False))
-        best_tables = radiance_tables(best, folder)
-        our_tables, true_tables = (of_back(tables_of(made.bsdf.evaluate)) for made in (ours, truth))
-        found[name] = {
-            "processor_time_radiance_s": round(their_time, 1),
-            "processor_time_ours_s": round(our_time, 1),
-            "samples_radiance": RADIANCE_SAMPLES,
-            "samples_ours": samples,
-            "processor_time_converged_ours_s": round(truth_time, 1),
-            "processor_time_converged_radiance_s": round(best_time, 1),
-            "against_our_converged": differences(our_tables, of_back(their_tables), true_tables),
-            "against_radiance_converged": differences(our_tables, of_back(their_tables), of_back(best_tables)),
-            "converged_apart": differences(true_tables, of_back(their_tables), of_back(best_tables)),
-            "hemispherical": hemispheres(ours, truth, best_tables, their_tables),
-            "read_by_radiance": in_radiance(ours, folder / "ours.xml"),
-        }
-    return found
 
 
 def tree(folder: Path) -> dict[str, Any]:
@@ -291,7 +297,9 @@ def tree(folder: Path) -> dict[str, Any]:
     slats = Slats()
     world = loaded(slats.radiance(), folder, "slats.rad")
     wall = time.monotonic()
-    made, seconds = timed(lambda: sp.generate_bsdf(world, "t4-4096", box=slats.box, periodic=True))
+    made, seconds = timed(
+        lambda: sp.generate_bsdf(world, "t4-4096", box=slats.box, periodic=True, samples=TREE_SAMPLES)
+    )
     wall = time.monotonic() - wall
     path = folder / "slats.xml"
     _, write_time = timed(lambda: made.save(path))
@@ -343,7 +351,7 @@ def disk(u: Floats) -> Floats:
     return np.column_stack([r * np.cos(phi), r * np.sin(phi)])
 
 
-PARTS = {"direct": direct, "equal-time": equal_time, "tree": tree}
+PARTS = {"slats": slats_at_equal_time, "sheet": sheet_at_equal_time, "tree": tree, "direct": direct}
 
 
 def main() -> None:

@@ -55,13 +55,16 @@ impl PyGenerated {
     }
 
     /// Of each side: its name, the errors of its cells, and columns of numbers.
-    fn sides<'py>(&self, py: Python<'py>) -> PyResult<Vec<(&'static str, [f64; 2], Bound<'py, PyDict>)>> {
+    fn sides<'py>(&self, py: Python<'py>) -> PyResult<Vec<SideTable<'py>>> {
         self.sides
             .iter()
             .map(|side| Ok((side_name(side.side), side.cell_error, columns(py, side)?)))
             .collect()
     }
 }
+
+/// Name, errors of the cells, columns of numbers.
+type SideTable<'py> = (&'static str, [f64; 2], Bound<'py, PyDict>);
 
 /// What is known of a column, by name.
 type Field = (&'static str, fn(&GeneratedColumn) -> f64);
@@ -158,7 +161,6 @@ pub fn generate_bsdf(
 
 /// Through transmittance (n, 3) and its standard error (n, 3) of rays in directions (n, 3).
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "keywords of the Python face")]
 pub fn straight_transmittance<'py>(
     py: Python<'py>,
     world: &PyWorld,
