@@ -70,7 +70,8 @@ class GeneratedBsdf:
 
     def summary(self) -> str:
         """Say how it was made and how exact it is, one line a fact."""
-        lines = [self._made_by, f"{self.samples} rays came in"]
+        width, height, depth = self.box[1] - self.box[0]
+        lines = [self._made_by, f"{self.samples} rays came in through {width:.6g} by {height:.6g}, {depth:.6g} deep"]
         lines += [line for side in self.sides for line in _told(side)]
         if self.lost > 0:
             lines.append(f"up to {100 * self.lost:.2g} % of a column's light was given up on its way")

@@ -30,8 +30,8 @@ pub(crate) struct Component<'a> {
 pub struct Production {
     /// A comment at the head of the file.
     pub comment: String,
-    /// Width, height and thickness of the product [m].
-    pub size: Option<[f64; 3]>,
+    /// Thickness of the product [m].
+    pub thickness: Option<f64>,
 }
 
 /// Which cells a tree is written in.
@@ -90,12 +90,10 @@ impl Bsdf {
         writeln!(out, "<Optical>\n<Layer>\n\t<Material>")?;
         writeln!(out, "\t\t<Name>{}</Name>", escaped(&self.name))?;
         writeln!(out, "\t\t<Manufacturer>{}</Manufacturer>", escaped(&self.manufacturer))?;
-        writeln!(out, "\t\t<DeviceType>Other</DeviceType>")?;
-        if let Some([width, height, thickness]) = production.size {
-            for (name, value) in [("Thickness", thickness), ("Width", width), ("Height", height)] {
-                writeln!(out, "\t\t<{name} unit=\"meter\">{value}</{name}>")?;
-            }
+        if let Some(thickness) = production.thickness {
+            writeln!(out, "\t\t<Thickness unit=\"Meter\">{thickness}</Thickness>")?;
         }
+        writeln!(out, "\t\t<DeviceType>Other</DeviceType>")?;
         writeln!(out, "\t</Material>")?;
         writeln!(
             out,

@@ -37,8 +37,8 @@ impl PyGenerated {
 
     /// The text of an LBNL XML file.
     fn xml(&self, py: Python<'_>, comment: String) -> String {
-        let size = self.corners[1] - self.corners[0];
-        let production = Production { comment, size: Some(size.to_array()) };
+        let thickness = Some((self.corners[1] - self.corners[0]).z);
+        let production = Production { comment, thickness };
         py.detach(|| self.bsdf.to_xml_with(&production))
     }
 

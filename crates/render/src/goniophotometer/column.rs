@@ -22,7 +22,7 @@ const MOST_STRAIGHT: usize = 4;
 const STRAIGHT_ERROR: f64 = 0.2;
 
 /// Rays between two looks whether to stop.
-const CHECK_EVERY: u64 = 4096;
+const CHECK_EVERY: u64 = 64;
 
 /// The sides that light can come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -184,7 +184,7 @@ impl Tracer<'_> {
             rays: 0,
         };
         let in_set = self.effort.samples.div_ceil(SETS);
-        while so_far.rays < self.effort.samples
+        while so_far.straight_sets.len() < SETS as usize
             || so_far.rays < self.effort.most_samples && !self.is_good(&so_far)
         {
             self.set_of_rays(side, column, in_set, &mut so_far, control)?;
@@ -217,7 +217,7 @@ impl Tracer<'_> {
         so_far.transmission.sets.push(0.0);
         so_far.reflection.sets.push(0.0);
         let (mut straight_on, mut undeflected) = (Rgb::ZERO, Rgb::ZERO);
-        let mut arrived = Arrived::default();
+        let (mut arrived, mut met) = (Arrived::default(), 0);
         for index in 0..in_set {
             if index % CHECK_EVERY == 0 {
                 control.check()?;
@@ -240,9 +240,10 @@ impl Tracer<'_> {
                 count(walk(self.world, self.cell, ray, &mut own));
                 straight_on += straight(self.world, self.cell, ray, &mut sampler);
             } else {
-                // Each surface on a straight way has points of its own.
-                let branch = |surface: u64, number: u64| {
-                    Sampler::new(self.effort.seed, second ^ (surface << 56), index * BRANCHES + number)
+                // One point after the other, whichever rays meet something: so directions stay well distributed.
+                let branch = |number: u64| {
+                    met += u64::from(number == 0);
+                    Sampler::new(self.effort.seed, second, (met - 1) * BRANCHES + number)
                 };
                 straight_on += fork(self.world, self.cell, ray, &mut sampler, BRANCHES, branch, count);
             }

@@ -76,6 +76,9 @@ fn stated_errors_are_what_the_values_differ_by() {
     let stated = generated.sides[1].cell_error[1];
     // Well-distributed points do better than the independent ones that the error is stated for.
     assert!(rms < 1.1 * stated && rms > 0.2 * stated, "{rms} {stated}");
+    // However few rays are asked for, there are enough to tell an error.
+    let least = made(&world, &GonioOptions { samples: Some(1), ..options });
+    assert!(least.sides[0].columns.iter().all(|c| c.samples == 8));
 }
 
 #[test]

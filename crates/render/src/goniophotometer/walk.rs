@@ -76,18 +76,18 @@ pub(super) fn walk(world: &World, cell: &Cell, ray: Ray, sampler: &mut Sampler) 
 }
 
 /// One ray, not drawn but split: what goes straight on is followed to its end and returned, and from each surface that it meets
-/// `branches` walks set out with the rest, each with its part of it; `branch` gives points to the surface's and the walk's number. Not for scenes with mist, which has no surface.
+/// walks set out with the rest, as many as `branches` where it is scattered, each with its part. `branch` gives the points of the
+/// walks, numbered from 0 at each surface. Not for scenes with mist, which has no surface.
 pub(super) fn fork(
     world: &World,
     cell: &Cell,
     ray: Ray,
     sampler: &mut Sampler,
     branches: u64,
-    mut branch: impl FnMut(u64, u64) -> Sampler,
+    mut branch: impl FnMut(u64) -> Sampler,
     mut arrived: impl FnMut(End),
 ) -> Rgb {
     let mut stem = Walker::new(world, cell, ray);
-    let mut surface = 0;
     while stem.events < MOST_EVENTS {
         let mut passed = 0.0;
         let hit = match stem.cell.next(world, &mut stem.ray, &mut passed) {
@@ -113,13 +113,12 @@ pub(super) fn fork(
                 let branches = if scattering.smooth.albedo() > 0.0 { branches } else { 1 };
                 let share = 1.0 / branches as f64;
                 for number in 0..branches {
-                    let mut own = branch(surface, number);
+                    let mut own = branch(number);
                     let mut walker = Walker { carried: stem.carried * share, share, ..stem };
                     if walker.go_on(material, &arrival, false, &mut own) && walker.survives(&mut own) {
                         arrived(walker.run(&mut own));
                     }
                 }
-                surface += 1;
                 let straight = scattering.straight;
                 if straight == Rgb::ZERO {
                     return Rgb::ZERO;
