@@ -22,7 +22,7 @@ class Slats:
     spacing: float = 0.05
     """From slat to slat [m]."""
     tilt_deg: float = 30.0
-    """From the normal: the slats' inner edges are down if it is positive."""
+    """From the normal: the edges towards the room are up if it is positive."""
     reflectance: float = 0.6
     """Diffuse, both sides [-]."""
 
@@ -49,7 +49,7 @@ class Slats:
         """Through transmittance [-] of light that runs in directions (n, 3).
 
         In the plane across the slats a ray climbs by tan O = y / z; a slat hides `width |cos(tilt) tan O - sin(tilt)|`
-        of each spacing from it, with the sign of the tilt as the slats fall towards the room.
+        of each spacing from it.
         """
         _, y, z = rows(directions).T
         tilt = math.radians(self.tilt_deg)
