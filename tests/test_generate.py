@@ -38,7 +38,7 @@ def test_what_goes_straight_is_the_closed_form(product: Slats | Sheet | Screen, 
     lit = truth > 0.05
     traced = sp.straight_transmittance(world, towards[lit][:50], box=product.box, periodic=True, samples=1 << 15)
     assert lit.sum() >= 50
-    # Eight times fewer rays than for the 0.2 % of validation/generate.md.
+    # Sixteen times fewer rays than in validation/generate.md.
     assert traced.through == pytest.approx(truth[lit][:50], rel=0.01)
     assert np.all(np.abs(traced.through - truth[lit][:50]) < 6 * traced.error + 1e-4)
 
