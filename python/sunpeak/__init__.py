@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from sunpeak.expressions import evaluate
     from sunpeak.fabrics import Fabric, RollerBlind
     from sunpeak.formulas import Formula
+    from sunpeak.generation import GeneratedBsdf, GeneratedSide, generate_bsdf, straight_transmittance
     from sunpeak.glare_report import GlareReport, GlareSource, ZoneLuminances
     from sunpeak.glare_rules import GlareRules, RulesName, Task
     from sunpeak.panes import Pane
@@ -39,6 +40,8 @@ __all__ = [
     "ExpandedMesh",
     "Fabric",
     "Formula",
+    "GeneratedBsdf",
+    "GeneratedSide",
     "GlareReport",
     "GlareRules",
     "GlareSource",
@@ -67,10 +70,12 @@ __all__ = [
     "check_scene",
     "direction",
     "evaluate",
+    "generate_bsdf",
     "glare",
     "plot_bsdf",
     "render",
     "side_of_ray",
+    "straight_transmittance",
     "sun_position",
     "trace",
 ]
@@ -85,6 +90,10 @@ _HOMES = {
     "Fabric": "fabrics",
     "RollerBlind": "fabrics",
     "Formula": "formulas",
+    "GeneratedBsdf": "generation",
+    "GeneratedSide": "generation",
+    "generate_bsdf": "generation",
+    "straight_transmittance": "generation",
     "GlareReport": "glare_report",
     "GlareSource": "glare_report",
     "ZoneLuminances": "glare_report",

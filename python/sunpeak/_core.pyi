@@ -73,6 +73,40 @@ def incident_cells(bsdf: Bsdf, front: bool, edge_points: int) -> tuple[_Floats, 
 def through_interval(bsdf: Bsdf, w_in: _Floats) -> _Floats: ...
 def probe_directions(bsdf: Bsdf, w_in: _Floats) -> _Floats: ...
 
+_Corners = tuple[Sequence[float], Sequence[float]] | None
+
+class Generated:
+    def bsdf(self) -> Bsdf: ...
+    def xml(self, comment: str) -> str: ...
+    @property
+    def corners(self) -> _Floats: ...
+    @property
+    def totals(self) -> tuple[int, int, float]: ...
+    def sides(self) -> list[tuple[str, tuple[float, float], dict[str, _Floats]]]: ...
+
+def generate_bsdf(
+    world: World,
+    name: str,
+    manufacturer: str,
+    basis: str,
+    box_corners: _Corners,
+    periodic: bool,
+    sides: list[str],
+    samples: int | None,
+    error: float,
+    tolerance: float,
+    reciprocity: bool,
+    colour: bool,
+    seed: int,
+    threads: int | None,
+    state: str | PathLike[str] | None,
+    resume: bool,
+    progress: Callable[[int, int], None] | None,
+) -> Generated: ...
+def straight_transmittance(
+    world: World, directions: _Floats, box_corners: _Corners, periodic: bool, samples: int, seed: int
+) -> tuple[_Floats, _Floats]: ...
+
 class Sky:
     @staticmethod
     def perez(

@@ -16,6 +16,8 @@ pub mod basis;
 mod bsdf;
 mod cache;
 mod convert;
+pub mod codec;
+pub mod counted;
 mod distribution;
 mod exact_peak;
 mod incident;

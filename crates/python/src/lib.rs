@@ -7,6 +7,7 @@ mod bsdf_report;
 mod error;
 mod expressions;
 mod fabric;
+mod generate;
 mod glare;
 mod goal;
 mod model;
@@ -38,6 +39,8 @@ mod _core {
     use super::expressions::evaluate;
     #[pymodule_export]
     use super::fabric::{fabric_xml, roller_blind, roller_blind_transmittance};
+    #[pymodule_export]
+    use super::generate::{PyGenerated, generate_bsdf, straight_transmittance};
     #[pymodule_export]
     use super::glare::{glare, glare_sources, position_indices};
     #[pymodule_export]

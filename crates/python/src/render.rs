@@ -19,7 +19,7 @@ use sunpeak_scene::Picture;
 
 /// A scene compiled for rendering.
 #[pyclass(frozen, name = "World", module = "sunpeak._core")]
-pub struct PyWorld(Arc<World>);
+pub struct PyWorld(pub Arc<World>);
 
 #[pymethods]
 impl PyWorld {

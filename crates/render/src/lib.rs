@@ -49,6 +49,7 @@
 mod accel;
 mod exact_sun;
 mod film;
+mod goniophotometer;
 mod guide;
 mod integrator;
 mod light;
@@ -65,6 +66,10 @@ mod transmit;
 mod world;
 
 pub use film::{PictureJudge, render_picture, render_until};
+pub use goniophotometer::{
+    DEFAULT_COLUMN_SAMPLES, Edges, Generated, GeneratedColumn, GeneratedSide, GonioOptions, Side,
+    generate_bsdf, straight_transmittance,
+};
 pub use options::{DEFAULT_MAX_DEPTH, DEFAULT_SAMPLES, RenderOptions, WorldOptions};
 pub use probe::{FirstDeltas, FirstSurface, first_deltas, first_surfaces};
 pub use sensor::{trace_irradiance, trace_radiance};

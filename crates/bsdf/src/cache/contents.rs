@@ -1,6 +1,6 @@
 //! What a cache file holds: a document's words, its tables, and their splits.
 
-use super::codec::{Decoder, Encoder, damaged};
+use crate::codec::{Decoder, Encoder, damaged};
 use crate::{
     basis::AngleBasis,
     bsdf::Sides,
