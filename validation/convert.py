@@ -1,6 +1,6 @@
 """BSDFs converted and made from formulas, against Radiance and quadratures: `convert.json`, tables of `convert.md`.
 
-usage: python validation/convert.py [SCHEMA.xsd]      (about five minutes on two cores)
+usage: python validation/convert.py [SCHEMA.xsd] [times others bsdf2klems albedo radiance peaks]      (some ten minutes)
 
 Needs pyradiance, the real files (`../shared/data`), and, for the files as others read them, pywincalc and xmlschema
 with LBNL's schema 1.7.5; what is missing is left out. Times are processor seconds.
@@ -67,10 +67,10 @@ def radiance(folder: Path, *command: object) -> tuple[bytes, float]:
 
 def bsdf2klems(folder: Path) -> list[Row]:
     """Trees to Klems, against bsdf2klems with more and more random pairs for each pair of patches."""
-    sp.Formula("phong", diffuse=0.2, specular=0.5, exponent=12).write(folder / "lobe.xml", "t4", 64)
+    sp.Formula("phong", diffuse=0.2, specular=0.5, exponent=12).write(folder / "lobe.xml", "t4", 16)
     files = [
-        ("lobe, t4 64 x 64", folder / "lobe.xml", (100, 400)),
-        ("louvre, t4 16 x 16", DATA / "louvre_t4-256.xml", (125, 500, 2000)),
+        ("lobe, t4 16 x 16", folder / "lobe.xml", (100,)),
+        ("louvre, t4 16 x 16", DATA / "louvre_t4-256.xml", (60, 240)),
     ]
     areas = klems_areas()
     weights = np.outer(areas, areas)
@@ -264,27 +264,32 @@ def table(rows: list[Row]) -> str:
 
 
 def main() -> None:
-    """Measure, and write the numbers into both files."""
-    schema = sys.argv[1] if len(sys.argv) > 1 else None
+    """Measure the parts that are asked for, and write their numbers into both files."""
+    asked = sys.argv[1:]
+    schema = next((word for word in asked if word.endswith(".xsd")), None)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        parts = {
-            "bsdf2klems": bsdf2klems(folder),
-            "radiance": as_radiance_reads(folder),
-            "albedo": albedos(),
-            "peaks": peaks(),
-            "times": times(),
-            "others": others(folder, schema),
+        parts: dict[str, Callable[[], list[Row]]] = {
+            "times": times,
+            "others": lambda: others(folder, schema),
+            "bsdf2klems": lambda: bsdf2klems(folder),
+            "albedo": albedos,
+            "radiance": lambda: as_radiance_reads(folder),
+            "peaks": peaks,
         }
-    (HERE / "convert.json").write_text(json.dumps(parts, indent=1) + "\n", encoding="utf-8")
-    page = HERE / "convert.md"
-    text = page.read_text(encoding="utf-8")
-    for part, rows in parts.items():
-        begin, end = f"<!-- {part}: made by convert.py -->\n", f"\n<!-- end of {part} -->"
-        before, _, rest = text.partition(begin)
-        _, _, after = rest.partition(end)
-        text = before + begin + table(rows) + end + after
-    page.write_text(text, encoding="utf-8")
+        for part, measure in parts.items():
+            if part in asked or all(word.endswith(".xsd") for word in asked):
+                keep(part, measure())
+
+
+def keep(part: str, rows: list[Row]) -> None:
+    """Write a part's numbers beside those of the others."""
+    numbers, page = HERE / "convert.json", HERE / "convert.md"
+    known = json.loads(numbers.read_text(encoding="utf-8")) if numbers.exists() else {}
+    numbers.write_text(json.dumps(known | {part: rows}, indent=1) + "\n", encoding="utf-8")
+    begin, end = f"<!-- {part}: made by convert.py -->\n", f"<!-- end of {part} -->"
+    before, _, rest = page.read_text(encoding="utf-8").partition(begin)
+    page.write_text(before + begin + table(rows) + "\n" + end + rest.partition(end)[2], encoding="utf-8")
 
 
 if __name__ == "__main__":
