@@ -39,7 +39,7 @@ impl PyGenerated {
     fn xml(&self, py: Python<'_>, comment: String) -> PyResult<String> {
         let thickness = Some((self.corners[1] - self.corners[0]).z);
         let label = Label { comments: Some(comment), thickness_m: thickness, ..Label::default() };
-        Ok(py.detach(|| self.bsdf.to_xml_as(&label, None))?)
+        py.detach(|| self.bsdf.to_xml_as(&label, None)).or_raise()
     }
 
     /// Smallest and largest corner of the sampled box (2, 3).
