@@ -114,9 +114,9 @@ def test_an_instance_reads_our_octrees(room: Path) -> None:
         (["rpict", "-x", "0", "room.oct"], "a picture needs at least one pixel each way"),
         (["rpict", "-vth", "-vh", "200", "room.oct"], "the view cannot be used"),
         (["rtrace"], "rtrace: missing octree argument"),
-        (["rtrace", "-ort", "room.oct"], "-ort: Sunpeak's rtrace does not give 'r'"),
+        (["rtrace", "-ort", "room.oct"], "-ort: 't' asks for the tree of rays"),
         (["rtrace", "-fz", "room.oct"], "command line error at '-fz'"),
-        (["rtrace", "-fac", "-oL", "room.oct"], "-fc: expected -ov"),
+        (["rtrace", "-fac", "-oL", "room.oct"], "-fc: expected -ov, -or or -ox"),
         (["rtrace", "-ff", "-os", "room.oct"], "-os: names are text; expected -fa"),
         (["oconv"], "oconv: no scene"),
         (["oconv", "none.rad"], "none.rad: cannot open scene file"),
@@ -211,7 +211,9 @@ def test_headers_are_read_and_changed(room: Path) -> None:
     assert program("getinfo", "-r", "A=3", folder=room, data=text) == text.replace(b"A=1", b"A=3")
     assert program("getinfo", "-", folder=room, data=text) == b"1 2\n"
     assert program("getinfo", "-c", "tr", "1", "7", folder=room, data=text).endswith(b"tr 1 7\n\n7 2\n")
-    assert program("getinfo", "-d", "none", "room.oct", folder=room, says="none: cannot open") == b"room.oct:"
+    cube = program("getinfo", "-d", "none", "room.oct", folder=room, says="none: cannot open")
+    # 4 m by 5 m by 3 m, in the middle of the cube that oconv lays around it.
+    assert cube == b"room.oct: -0.50001 -1e-05 -1.00001 5.00002\n"
 
 
 def test_scene_check_lists_all_mistakes(tmp_path: Path, sunpeak: CommandLine) -> None:
@@ -224,6 +226,19 @@ def test_scene_check_lists_all_mistakes(tmp_path: Path, sunpeak: CommandLine) ->
     lines = [line for line in answer.out.splitlines() if line.startswith("error: ")]
     expected = ["bad.rad:2:1", "bad.rad:2:6", "bad.rad:3:1", "bad.rad:5:1", "bad.rad:6:1"]
     assert sorted(line.split()[1].rstrip(":") for line in lines) == expected
+    (tmp_path / "functions.rad").write_text(
+        "void brightfunc p 2 stripes nothere.cal 0 0\np plastic m 0 0 5 .5 .5 .5 0 0\nm sphere s 0 0 4 0 0 0 1\n"
+        "void colorfunc q 4 1 wrong(Px) 1 wrong.cal 0 0\nq plastic n 0 0 5 .5 .5 .5 0 0\nn sphere t 0 0 4 0 0 0 1\n"
+    )
+    (tmp_path / "wrong.cal").write_text("right(x) = x;\nwrong(x) = x + ;\n")
+    answer = sunpeak("scene", "check", "functions.rad", folder=tmp_path, expect=1)
+    missing, wrong = [line for line in answer.out.splitlines() if line.startswith("error: ")]
+    assert missing.startswith(
+        'error: functions.rad:1:1: brightfunc "p": function file: cannot find the file "nothere.cal"'
+    )
+    assert "looked for nothere.cal" in missing
+    assert "functions.rad:4:1: colorfunc" in wrong
+    assert "wrong.cal:2:16: expected" in wrong
     (tmp_path / "good.rad").write_text(ROOM + "void plastic spare 0 0 5 .5 .5 .5 0 0\n")
     answer = sunpeak("scene", "check", "good.rad", "--json", folder=tmp_path)
     assert '"errors": []' in answer.out

@@ -1,12 +1,13 @@
 """CPU time of `rpict` and of ours to the same error, in rooms behind shades.
 
-usage: python -m transport [--only NAME ...] [--reference-error E] [--limit-s S] [--out DIR]        (from inside benches/)
+usage, inside benches/: python -m transport [--only NAME ...] [--reference-error E] [--limit-s S] [--out DIR]
 
-Each room is seen by a 180-degree fisheye of 240 x 240 pixels. Errors are root mean squares over blocks of 3 degrees, relative to the
-picture's mean luminance, against a reference that our path tracer makes with other seeds; it says how far it has converged itself.
-Blocks within 3 degrees of a sun that the eye sees are left out: neither program's pixels hold it. `rpict` runs in one process with
-several qualities, with and without its ambient cache; ours runs with doubling numbers of paths, loading and compiling counted.
-Where the room has an `aBSDF`, Radiance extracts its peak by its own rule, and its reference is made under that rule.
+Each room is seen by a 180-degree fisheye of 240 x 240 pixels. Errors are root mean squares over blocks of 3 degrees,
+relative to the picture's mean luminance, against a reference that our path tracer makes with other seeds; it says how
+far it has converged itself. Blocks within 3 degrees of a sun that the eye sees are left out: neither program's pixels
+hold it. `rpict` runs in one process with several qualities, with and without its ambient cache, two at a time; ours
+runs with doubling numbers of paths, loading and compiling counted. Where the room has an `aBSDF`, Radiance extracts
+its peak by its own rule, and its reference is made under that rule.
 """
 
 import argparse
@@ -17,6 +18,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -54,6 +56,8 @@ class Measured:
         self.files = room.write(folder)
         self.view = sp.View.parse(room.view)
         self.mask = mask(self.view, room.sun)
+        cosine = self.view.rays(BLOCKS, BLOCKS).directions @ np.asarray(self.view.direction)
+        self.weights = np.nan_to_num(self.view.solid_angles(BLOCKS, BLOCKS) * cosine)
         self.reference, self.reference_error = self.converged(room.peak, reference_error, limit_s)
         if room.rad_peak == room.peak:
             self.rad_reference, self.rad_reference_error = self.reference, self.reference_error
@@ -84,11 +88,23 @@ class Measured:
                 np.savez(kept, mean=mean, error=error)
                 return mean, error
 
+    def octree(self) -> Path:
+        """Make the octree, once."""
+        octree = self.folder / "scene.oct"
+        if not octree.exists():
+            folder = self.room.files_in or self.folder
+            with octree.open("wb") as out:
+                environment = radiance_environment(self.folder)
+                subprocess.run(["oconv", *self.files], cwd=folder, env=environment, stdout=out, check=True)
+        return octree
+
     def errors(self, luminance: Floats, reference: Floats) -> dict[str, float]:
-        """Errors of a picture's blocks, Ev and DGP."""
+        """Errors of a picture's blocks, and of Ev without the blocks that are left out."""
         ours, truth = blocks(luminance)[self.mask], blocks(reference)[self.mask]
         difference = ours - truth
+        ev, true_ev = (float((blocks(p) * self.weights)[self.mask].sum()) for p in (luminance, reference))
         return {
+            "ev": ev / true_ev - 1,
             "rmse": float(np.sqrt(np.mean(difference**2)) / truth.mean()),
             "bias": float(difference.mean() / truth.mean()),
         }
@@ -122,12 +138,18 @@ def run_rpict(measured: Measured, quality: str, limit_s: float) -> dict[str, Any
     """Run `rpict` once: CPU time and errors."""
     folder = measured.room.files_in or measured.folder
     environment = radiance_environment(measured.folder)
-    octree = measured.folder / "scene.oct"
-    if not octree.exists():
-        made = subprocess.run(["oconv", *measured.files], cwd=folder, env=environment, stdout=octree.open("wb"), check=False)
-        made.check_returncode()
-    picture = measured.folder / "rpict.hdr"
-    command = ["rpict", *measured.room.view.split(), "-x", str(SIZE), "-y", str(SIZE), *COMMON, *QUALITIES[quality], str(octree)]
+    octree, picture = measured.octree(), measured.folder / f"rpict {quality}.hdr"
+    command = [
+        "rpict",
+        *measured.room.view.split(),
+        "-x",
+        str(SIZE),
+        "-y",
+        str(SIZE),
+        *COMMON,
+        *QUALITIES[quality],
+        str(octree),
+    ]
     with picture.open("wb") as out:
         process = subprocess.Popen(command, cwd=folder, env=environment, stdout=out, stderr=subprocess.DEVNULL)
         cpu_s = 0.0
@@ -193,27 +215,35 @@ def main() -> None:
                 (options.out / "transport.json").write_text(json.dumps(content, indent=1) + "\n")
 
 
+def described(run: dict[str, Any]) -> str:
+    """Time and errors on a line."""
+    return f"{run['cpu_s']:>8.2f} s {run['rmse']:>8.2%} bias {run['bias']:>+7.2%} Ev {run['ev']:>+7.2%}"
+
+
 def measure(room: BenchRoom, folder: Path, options: argparse.Namespace) -> dict[str, Any]:
     """Measure one room."""
     measured = Measured(room, folder, options.reference_error, options.limit_s)
-    print(f"\n{room.name}: reference {measured.reference_error:.2%}, under Radiance's rule {measured.rad_reference_error:.2%}")
+    errors = f"{measured.reference_error:.2%}, under Radiance's rule {measured.rad_reference_error:.2%}"
+    print(f"\n{room.name}: reference {errors}")
     ours = [run_ours(measured, samples, 7) for samples in OUR_SAMPLES]
     for run in ours:
-        print(f"  ours, {run['samples']:>3} paths      {run['cpu_s']:>8.2f} s {run['rmse']:>8.2%} bias {run['bias']:>+7.2%}")
-    theirs = []
-    for quality in () if options.ours_only else QUALITIES:
-        run = run_rpict(measured, quality, options.limit_s)
-        theirs.append(run)
+        print(f"  ours, {run['samples']:>3} paths       {described(run)}")
+    if options.ours_only:
+        return {"room": room.name, "ours": ours}
+    measured.octree()
+    with ThreadPoolExecutor(2) as two:
+        theirs = list(two.map(lambda quality: run_rpict(measured, quality, options.limit_s), QUALITIES))
+    for run in theirs:
         if not run["finished"]:
-            print(f"  rpict, {quality:<16} {run['cpu_s']:>8.1f} s not finished", flush=True)
+            print(f"  rpict, {run['quality']:<16} {run['cpu_s']:>8.1f} s, not finished")
             continue
         run["ours_cpu_s"] = time_to(run["rmse"], ours)
-        ratio = run["cpu_s"] / run["ours_cpu_s"]
+        better = [other["cpu_s"] for other in theirs if other["finished"] and other["rmse"] <= run["rmse"]]
+        run["ratio"] = min(better) / run["ours_cpu_s"]
         print(
-            f"  rpict, {quality:<16} {run['cpu_s']:>8.2f} s {run['rmse']:>8.2%} bias {run['bias']:>+7.2%}"
-            f"   ours {run['ours_cpu_s']:.2f} s, ratio {ratio:.1f}",
-            flush=True,
+            f"  rpict, {run['quality']:<16} {described(run)}   ours {run['ours_cpu_s']:.2f} s, ratio {run['ratio']:.1f}"
         )
+    sys.stdout.flush()
     return {
         "room": room.name,
         "reference_error": measured.reference_error,

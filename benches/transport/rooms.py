@@ -122,7 +122,12 @@ def frads(folder: Path) -> list[Path]:
     sky = folder / "sky.rad"
     sky.write_text(CLEAR_SKY.to_radiance())
     names = ("walls", "ceiling", "floor", "windowframe", "extwalls", "ground", "desks")
-    return [room / "Objects/materials.mat", *(room / f"Objects/{n}.rad" for n in names), room / "Resources/ec60.rad", sky]
+    return [
+        room / "Objects/materials.mat",
+        *(room / f"Objects/{n}.rad" for n in names),
+        room / "Resources/ec60.rad",
+        sky,
+    ]
 
 
 def scene(folder: Path, text: str) -> list[Path]:

@@ -2,9 +2,10 @@
 
 usage: python compare.py        (writes blind.xml, flat.rad, sky.rad and three pictures beside itself)
 
-With the slats alone, scattered light has to find its way between them. With the BSDF alone one sees a veil where
-the slats are. With the proxy one sees slats, and they throw their shadows, but what they scatter into the room
-comes from the table.
+The slats are level. Alone, the light that they scatter has to find its way between them (Ev at the desk 7.8 klx, DGP
+0.66). With the BSDF alone one sees a veil where they are, and the sun's stripes are smeared over the floor (8.6 klx,
+0.70). With the proxy one sees slats, and they throw their shadows, but what they scatter into the room comes from the
+table (8.1 klx, 0.67).
 """
 
 from pathlib import Path

@@ -17,14 +17,19 @@ if TYPE_CHECKING:
     from sunpeak.comfort import glare
     from sunpeak.expressions import evaluate
     from sunpeak.fabrics import Fabric, RollerBlind
+    from sunpeak.formulas import Formula
+    from sunpeak.generation import GeneratedBsdf, GeneratedSide, generate_bsdf, straight_transmittance
     from sunpeak.glare_report import GlareReport, GlareSource, ZoneLuminances
     from sunpeak.glare_rules import GlareRules, RulesName, Task
+    from sunpeak.panes import Pane
     from sunpeak.pictures import ExactSource, Picture
     from sunpeak.rendering import World, render, trace
     from sunpeak.scattering import Bsdf, Evidence, Samples, direction, side_of_ray
     from sunpeak.scene_check import SceneCheck, check_scene
     from sunpeak.scenes import Rays, Scene, View
+    from sunpeak.sheets import ExpandedMesh, Perforated
     from sunpeak.skies import Place, Sky, SunPosition, sun_position
+    from sunpeak.systems import Shade, Straight, System
 
 __all__ = [
     "Blind",
@@ -32,11 +37,17 @@ __all__ = [
     "BsdfReport",
     "Evidence",
     "ExactSource",
+    "ExpandedMesh",
     "Fabric",
+    "Formula",
+    "GeneratedBsdf",
+    "GeneratedSide",
     "GlareReport",
     "GlareRules",
     "GlareSource",
     "InputError",
+    "Pane",
+    "Perforated",
     "Picture",
     "Place",
     "Rays",
@@ -45,8 +56,11 @@ __all__ = [
     "Samples",
     "Scene",
     "SceneCheck",
+    "Shade",
     "Sky",
+    "Straight",
     "SunPosition",
+    "System",
     "Task",
     "Verdict",
     "View",
@@ -56,10 +70,12 @@ __all__ = [
     "check_scene",
     "direction",
     "evaluate",
+    "generate_bsdf",
     "glare",
     "plot_bsdf",
     "render",
     "side_of_ray",
+    "straight_transmittance",
     "sun_position",
     "trace",
 ]
@@ -73,12 +89,18 @@ _HOMES = {
     "evaluate": "expressions",
     "Fabric": "fabrics",
     "RollerBlind": "fabrics",
+    "Formula": "formulas",
+    "GeneratedBsdf": "generation",
+    "GeneratedSide": "generation",
+    "generate_bsdf": "generation",
+    "straight_transmittance": "generation",
     "GlareReport": "glare_report",
     "GlareSource": "glare_report",
     "ZoneLuminances": "glare_report",
     "GlareRules": "glare_rules",
     "RulesName": "glare_rules",
     "Task": "glare_rules",
+    "Pane": "panes",
     "ExactSource": "pictures",
     "Picture": "pictures",
     "World": "rendering",
@@ -94,10 +116,15 @@ _HOMES = {
     "Rays": "scenes",
     "Scene": "scenes",
     "View": "scenes",
+    "ExpandedMesh": "sheets",
+    "Perforated": "sheets",
     "Place": "skies",
     "Sky": "skies",
     "SunPosition": "skies",
     "sun_position": "skies",
+    "Shade": "systems",
+    "Straight": "systems",
+    "System": "systems",
 }
 """Where each name lives; a module is read when a name of it is first asked for, so that small commands start fast."""
 

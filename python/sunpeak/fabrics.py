@@ -5,7 +5,9 @@ from dataclasses import dataclass
 from os import PathLike
 
 from sunpeak import _core
+from sunpeak.bands import write_bands
 from sunpeak.files import write_text
+from sunpeak.scattering import Bsdf
 
 
 @dataclass(frozen=True)
@@ -91,9 +93,23 @@ class RollerBlind:
     def _at(self, incidence_rad: float) -> tuple[float, float, float]:
         return _core.roller_blind_transmittance(*self._numbers(), incidence_rad)
 
-    def write(self, path: str | PathLike[str], basis: str = "klems") -> None:
-        """Tabulate by exact cell averages and write an LBNL XML file, whole or not at all; bases as for `Fabric`.
+    def bsdf(self, basis: str = "klems") -> Bsdf:
+        """Tabulate by exact cell averages and keep what goes straight as the model has it; bases as for `Fabric`.
 
         Raises `InputError` where the numbers contradict each other.
         """
-        write_text(path, _core.roller_blind_xml(basis, *self._numbers()))
+        return Bsdf(_core.roller_blind(basis, *self._numbers()))
+
+    def write(
+        self,
+        path: str | PathLike[str],
+        basis: str = "klems",
+        *,
+        solar: "RollerBlind | None" = None,
+        split: str | PathLike[str] | None = None,
+    ) -> None:
+        """Write an LBNL XML file of what `bsdf` gives, whole or not at all; with the `solar` values as a second band.
+
+        `split` names a folder for the visible band with its exact straight part, which `Bsdf.load` reads.
+        """
+        write_bands(self.bsdf(basis), None if solar is None else solar.bsdf(basis), path, split)

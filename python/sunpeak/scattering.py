@@ -13,7 +13,9 @@ import numpy as np
 import numpy.typing as npt
 
 from sunpeak import _core
+from sunpeak.bases import basis_name
 from sunpeak.bsdf_report import BsdfReport, report_on
+from sunpeak.files import write_text
 
 Peak = Literal["split", "radiance", "paper", "off"]
 """Which part of a table goes straight through.
@@ -80,6 +82,11 @@ class Description(TypedDict):
 
     name: str
     manufacturer: str
+    thickness_m: float | None
+    comments: str
+    """How it was made, and its statistical error."""
+    bands: list[str]
+    """All bands of the file: `Visible`, `Solar` …"""
     structure: str
     warnings: list[str]
     components: list[Component]
@@ -110,6 +117,59 @@ class Bsdf:
         if isinstance(instrument_fwhm_deg, str):
             raise _core.InputError(f"instrument_fwhm_deg: {instrument_fwhm_deg!r}; expected degrees or 'find'")
         return cls(_core.Bsdf.load(path, instrument_fwhm_deg))
+
+    @classmethod
+    def load_solar(cls, path: str | PathLike[str]) -> "Bsdf":
+        """Read the solar band of an LBNL XML file; its values stand where others have the luminous ones.
+
+        Raises `InputError` where the file has no solar band.
+        """
+        return cls(_core.load_solar(path))
+
+    def convert(
+        self,
+        basis: str | None = None,
+        *,
+        resolution: int | None = None,
+        rotate_deg: float = 0.0,
+        flip: bool = False,
+        swap_sides: bool = False,
+        reciprocity: Literal["average"] | None = None,
+        keep_peak: bool = False,
+    ) -> "Bsdf":
+        """Tabulate the same product otherwise; flux is kept, by the exact areas that old and new cells share.
+
+        `basis` is `klems-full` (or `klems`), `klems-half`, `klems-quarter`, or `t3` and `t4` with `resolution` cells a
+        side (8 to 128, a power of two); `t3-4096` says the same as `t3` with 64. None keeps the basis. An isotropic
+        tree from a table that is not gets the means over azimuth.
+
+        `flip` turns the product over about its up axis, `swap_sides` only exchanges the names of front and back,
+        `rotate_deg` then turns it about its normal, counterclockwise seen from the front. `reciprocity="average"`
+        replaces f(in, out) of one side and f(out, in) of the other by their mean. `keep_peak` puts the split's peak
+        where a delta lies in the new basis; without, cells hand over what they hold.
+        """
+        if reciprocity not in (None, "average"):
+            raise _core.InputError(f"reciprocity: {reciprocity!r}; expected 'average' or None")
+        name = None if basis is None else basis_name(basis, resolution)
+        averaged = reciprocity == "average"
+        return Bsdf(_core.convert_bsdf(self._core, name, rotate_deg, flip, swap_sides, averaged, keep_peak))
+
+    def save(
+        self,
+        path: str | PathLike[str],
+        *,
+        solar: "Bsdf | None" = None,
+        name: str | None = None,
+        manufacturer: str | None = None,
+        thickness_m: float | None = None,
+        comments: str | None = None,
+    ) -> None:
+        """Write an LBNL XML file, whole or not at all; `solar` has the tables of the solar band beside the visible one.
+
+        What is not given stays what the BSDF says of itself. The same tables give the same bytes.
+        """
+        solar_core = None if solar is None else solar._core
+        write_text(path, _core.bsdf_xml(self._core, solar_core, name, manufacturer, thickness_m, comments))
 
     def evaluate(
         self,

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from os import PathLike
 
 from sunpeak import _core
+from sunpeak.rad_input import scene_files
 from sunpeak.scenes import StrPath, strings
 
 
@@ -26,7 +27,7 @@ def check_scene(
 ) -> SceneCheck:
     """Read scene files to their end, as `Scene.load` does, and gather all mistakes; then load what materials name."""
     names = [files] if isinstance(files, str | PathLike) else list(files)
-    paths = [os.fspath(name) for name in names]
+    paths = scene_files(os.fspath(name) for name in names)
     scene, errors, warnings = _core.Scene.check(paths, strings(search_path), allow_commands)
     if not errors:
         try:

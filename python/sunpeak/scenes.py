@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sunpeak import _core
+from sunpeak.rad_input import RadInput, is_rad_input, scene_files
 from sunpeak.scattering import Floats, rows
 
 StrPath = str | PathLike[str]
@@ -31,12 +32,14 @@ class Scene:
         Files that a scene names (BSDFs, functions) are looked for in the current folder, beside the scene file, in
         `search_path` and in the folders of the environment variable RAYPATH. `!xform`, `!genbox`, `!gensky` and
         `!gendaylit` are done inside Sunpeak; other commands are refused by name unless `allow_commands`, and then run
-        in a shell.
+        in a shell. A `.rif` file stands for the scene that it names (materials, illum, scene).
 
         Raises `InputError` with file, line and column, `OSError` for a file that cannot be read.
         """
         names = [files] if isinstance(files, str | PathLike) else list(files)
-        return cls(_core.Scene.load([os.fspath(name) for name in names], strings(search_path), allow_commands))
+        return cls(
+            _core.Scene.load(scene_files(os.fspath(name) for name in names), strings(search_path), allow_commands)
+        )
 
     @classmethod
     def parse(
@@ -87,7 +90,9 @@ class View:
 
     @classmethod
     def load(cls, path: StrPath) -> Self:
-        """Read the view of a `.vf` file or of a picture's header."""
+        """Read the view of a `.vf` file, of a picture's header, or the first one of a `.rif` file."""
+        if is_rad_input(os.fspath(path)):
+            return cls(_core.View.parse(" ".join(RadInput.load(os.fspath(path)).view())))
         return cls(_core.View.load(path))
 
     @classmethod

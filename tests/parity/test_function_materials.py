@@ -75,3 +75,27 @@ def test_a_sun_shines_through_a_prism(radiance: Radiance, tmp_path: Path) -> Non
     assert (theirs == 0).any()
     assert np.array_equal(ours > 0, theirs > 0)
     assert np.abs(ours - theirs).max() < 0.02 * theirs.max(), (ours, theirs)
+
+
+def test_a_sun_is_as_large_behind_a_prism_as_rays_find_it(radiance: Radiance, tmp_path: Path) -> None:
+    """A prism that halves what leaves along x and y: a quarter of the projected solid angle, the same radiance.
+
+    Radiance's rays find that too; its virtual sun keeps the size of the sun, and gives about four times as much.
+    """
+    scale = "zoom = if(Dz, 2, .5); ax = zoom*Dx; ay = zoom*Dy; az = if(Dz, 1, -1)*sqrt(1 - ax*ax - ay*ay);"
+    text = (
+        "void light l 0 0 3 1e4 1e4 1e4\nl source sun 0 0 4 .2 -.1 1 2\n"
+        "void prism1 x 5 1 ax ay az mine.cal 0 0\nx ring r 0 0 8 0 0 2 0 0 1 0 5\n"
+    )
+    sensor = np.array([[0, 0, 0, 0, 0, 1]], dtype=np.float64)
+    ours, virtual = both(radiance, tmp_path, text, "-I", rays=sensor, samples=4096, definitions=scale)
+    sun = np.array([0.2, -0.1, 1]) / np.linalg.norm([0.2, -0.1, 1])
+    expected = 1e4 * np.pi * np.sin(np.radians(1)) ** 2 * sun[2] / 4
+    assert ours == pytest.approx(expected, rel=5e-3)
+    assert virtual.mean() > 3 * expected
+    # Rays from the sensor over a square that the sun behind the prism lies in, by their cosines along x and y.
+    random = np.random.default_rng(5)
+    x, y = sun[0] / 2 + random.uniform(-0.02, 0.02, 20_000), sun[1] / 2 + random.uniform(-0.02, 0.02, 20_000)
+    rays = np.column_stack([np.zeros((len(x), 3)), x, y, np.sqrt(1 - x**2 - y**2)])
+    seen = radiance.rtrace(tmp_path / "scene.oct", rays, "-ab", "0", "-w", folder=tmp_path)
+    assert seen[:, 0].mean() * 0.04**2 == pytest.approx(expected, rel=0.03)

@@ -1,6 +1,8 @@
 """A few whole scenes against pictures by Radiance; `validation/scenes.py` compares all and keeps the references."""
 
 import json
+import os
+import shutil
 import sys
 from pathlib import Path
 
@@ -14,6 +16,9 @@ sys.path.insert(0, str(ROOT / "validation"))
 pytest.importorskip("pyradiance", reason="the oracle pyradiance is not installed")
 
 import scenes
+from scene_stand_ins import make_stand_ins
+
+import sunpeak as sp
 
 CHEAP = ["cornell_window", "frads_v1a", "tutorial_glazing", "tutorial_diffuse_glass"]
 SAMPLES = 64
@@ -37,3 +42,22 @@ def test_scene(name: str, shared: Path, radiance: Radiance, tmp_path: Path, monk
     rmse = scenes.relative_rms(ours, theirs)
     assert noise < 0.03
     assert np.sqrt(max(rmse**2 - noise**2, 0.0)) <= scenes.BLOCK_TOLERANCE
+
+
+def test_every_small_scene_loads(
+    shared: Path, radiance: Radiance, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All input files of `rad` in the collection, one of which has everything; what is missing is made."""
+    folder = tmp_path / "scenes"
+    shutil.copytree(shared / "scenes/radiance-renders", folder, copy_function=shutil.copyfile)
+    make_stand_ins(tmp_path, radiance)
+    monkeypatch.chdir(folder)
+    monkeypatch.setenv("RAYPATH", f"{tmp_path}:.:{radiance.library}")
+    monkeypatch.setenv("PATH", str(radiance.programs), prepend=os.pathsep)
+    inputs = sorted(folder.glob("*.rif"))
+    assert len(inputs) > 15
+    for file in inputs:
+        found = sp.check_scene(file, allow_commands=True)
+        assert found.errors == []
+        assert found.surfaces > 20
+        assert sp.View.load(file).kind.startswith("-vt")

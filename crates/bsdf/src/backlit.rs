@@ -214,9 +214,8 @@ impl RunningSums {
 /// For the middle of each ring and each kept azimuth of the incident point.
 fn polar(oriented: &Oriented, residual: bool, rings: usize, light: impl Fn(DVec2) -> Rgb) -> Vec<Rgb> {
     // Exiting points in rings of equal width, fine in the middle, where the horizon often is.
-    let point = |ring: f64, azimuth: f64| {
-        DVec2::from_angle(azimuth * TAU / AZIMUTHS as f64) * (ring / RINGS as f64)
-    };
+    let point =
+        |ring: f64, azimuth: f64| DVec2::from_angle(azimuth * TAU / AZIMUTHS as f64) * (ring / RINGS as f64);
     // Twice around, so that a turned ring is one stretch.
     let mut lights = [const { Vec::new() }; 3];
     for ring in 0..RINGS {

@@ -5,6 +5,7 @@ use crate::{
     distribution::Distribution,
     peak::{PeakRule, reference},
     proposal::{Oriented, Proposal},
+    table::{Columns, Table},
     xml::Document,
 };
 use glam::DVec2;
@@ -42,6 +43,12 @@ pub struct Bsdf {
     pub name: String,
     /// Manufacturer in the file.
     pub manufacturer: String,
+    /// Thickness in the file [m].
+    pub thickness_m: Option<f64>,
+    /// How it was made, and its statistical error.
+    pub comments: String,
+    /// Names of all bands of the file.
+    pub bands: Vec<String>,
     /// `IncidentDataStructure` of the file: `Columns`, `TensorTree3` …
     pub structure: String,
     /// What was tolerated in the file.
@@ -127,10 +134,25 @@ impl Bsdf {
         Self {
             name: document.name,
             manufacturer: document.manufacturer,
+            thickness_m: document.thickness_m,
+            comments: document.comments,
+            bands: document.bands,
             structure: document.structure,
             warnings: document.warnings,
             transmission,
             reflection,
+        }
+    }
+
+    /// What the file says beside its tables.
+    pub(crate) fn document(&self) -> Document {
+        Document {
+            name: self.name.clone(),
+            manufacturer: self.manufacturer.clone(),
+            thickness_m: self.thickness_m,
+            comments: self.comments.clone(),
+            structure: self.structure.clone(),
+            ..Document::default()
         }
     }
 
@@ -145,6 +167,14 @@ impl Bsdf {
     /// The table that light meets which is traced from `w_in`'s side, and whether it is traced against the table.
     pub fn distribution(&self, w_in: Vec3, mode: Mode) -> Option<&Oriented> {
         self.lobe(w_in, mode).map(|l| &l.oriented)
+    }
+
+    /// Are all of its tables matrices whose incident and exiting patches are those of a division?
+    pub(crate) fn is_tabulated_in(&self, division: &Columns) -> bool {
+        let Columns::Patches(basis) = division else { return false };
+        self.own_distributions().iter().all(
+            |(_, d)| matches!(d.luminous(), Table::Matrix(m) if m.incident == *basis && m.exiting == *basis),
+        )
     }
 
     fn value(&self, w_in: Vec3, w_out: Vec3, residual: bool) -> Rgb {
@@ -204,12 +234,7 @@ impl Bsdf {
     /// What a side of the product gives off that a far field lights from the other side: the front for `at_front`. `light` is
     /// the field's radiance in a direction of the BSDF's frame. What `rule` splits off is left out. `None` where nothing comes
     /// through.
-    pub fn backlit(
-        &self,
-        at_front: bool,
-        rule: PeakRule,
-        light: impl Fn(Vec3) -> Rgb,
-    ) -> Option<Backlit> {
+    pub fn backlit(&self, at_front: bool, rule: PeakRule, light: impl Fn(Vec3) -> Rgb) -> Option<Backlit> {
         let side = if at_front { 1.0 } else { -1.0 };
         let oriented = self.distribution(Vec3::new(0.0, 0.0, side), Mode::Transmission)?;
         let light_at = |p_out: DVec2| {

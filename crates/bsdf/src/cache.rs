@@ -12,12 +12,11 @@
 //! take 0.1 s. The bytes are written by hand ([`codec`]): the few kinds of things need checks of their own when they are read,
 //! and no other crate's format then decides when old files become unreadable.
 
-mod codec;
 mod contents;
 
 pub(crate) use contents::Contents;
 
-use codec::{Decoder, Encoder, HASH, damaged};
+use crate::codec::{Decoder, Encoder, HASH, damaged};
 use std::{
     ffi::OsString,
     fs::{self, File},

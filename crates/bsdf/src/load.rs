@@ -6,7 +6,7 @@ use crate::{
     distribution::Distribution,
     peak::Instrument,
     table::Table,
-    xml::{self, Block, Document},
+    xml::{self, Band, Block, Document},
 };
 use std::{fs::File, io::BufReader, path::Path, sync::Arc};
 use sunpeak_core::{Error, Location, Result};
@@ -30,11 +30,17 @@ impl Bsdf {
         let contents = match slot.as_ref().and_then(Slot::get) {
             Some(contents) => contents,
             None => {
-                let contents = split(&path.to_string_lossy(), read(path)?, Instrument::None)?;
+                let contents = split(&path.to_string_lossy(), read(path, Band::Visible)?, Instrument::None)?;
                 slot.iter().for_each(|slot| slot.put(&contents));
                 contents
             }
         };
+        Ok(Self::from_sides(contents.document, contents.sides))
+    }
+
+    /// The tables of the solar band of an LBNL XML file, in the place of the luminous ones.
+    pub fn load_solar(path: &Path) -> Result<Self> {
+        let contents = split(&path.to_string_lossy(), read(path, Band::Solar)?, Instrument::None)?;
         Ok(Self::from_sides(contents.document, contents.sides))
     }
 
@@ -49,7 +55,7 @@ impl Bsdf {
             let message = "it is split already, and has the instrument's width in it; expected the XML file";
             return Err(Error::input(Location::new(&*name, 0, 0), message));
         }
-        let contents = split(&name, read(path)?, instrument)?;
+        let contents = split(&name, read(path, Band::Visible)?, instrument)?;
         Ok(Self::from_sides(contents.document, contents.sides))
     }
 
@@ -60,9 +66,9 @@ impl Bsdf {
     }
 }
 
-fn read(path: &Path) -> Result<Document> {
+fn read(path: &Path, band: Band) -> Result<Document> {
     let file = File::open(path).map_err(|e| Error::io(path, e))?;
-    xml::read(&path.to_string_lossy(), BufReader::with_capacity(BUFFER, file))
+    xml::read_band(&path.to_string_lossy(), BufReader::with_capacity(BUFFER, file), band)
 }
 
 fn split(file: &str, mut document: Document, instrument: Instrument) -> Result<Contents> {

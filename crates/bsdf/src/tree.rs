@@ -6,8 +6,10 @@
 
 mod build;
 mod pack;
+mod reduce;
 
 pub use build::TreeBuilder;
+pub use reduce::Regular;
 
 /// Most values that a file may hold: 128 cells a side in four dimensions, 1 GB.
 pub const MAX_VALUES: usize = 1 << 28;

@@ -22,6 +22,12 @@ pub struct Document {
     pub name: String,
     /// `Material/Manufacturer`.
     pub manufacturer: String,
+    /// `Material/Thickness` [m].
+    pub thickness_m: Option<f64>,
+    /// `Material/Comments`: how it was made, and its statistical error.
+    pub comments: String,
+    /// Names of all bands of the file, also of those that were not asked for.
+    pub bands: Vec<String>,
     /// `IncidentDataStructure`.
     pub structure: String,
     /// Tables, in file order.
@@ -41,8 +47,28 @@ pub struct Block {
     pub table: Table,
 }
 
-/// Bands that are used: luminous, and colour by CIE X and Z (matrices) or u' and v' (trees).
-const BANDS: [&str; 5] = ["Visible", "CIE-X", "CIE-Z", "CIE-u", "CIE-v"];
+/// Which tables of a file are read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Band {
+    /// Luminous, and colour by CIE X and Z (matrices) or u' and v' (trees).
+    #[default]
+    Visible,
+    /// Of the whole solar spectrum; its blocks then stand for the luminous ones.
+    Solar,
+}
+
+impl Band {
+    /// Names of its blocks.
+    fn names(self) -> &'static [&'static str] {
+        match self {
+            Self::Visible => &["Visible", "CIE-X", "CIE-Z", "CIE-u", "CIE-v"],
+            Self::Solar => &["Solar"],
+        }
+    }
+}
+
+/// More bands than a file has for a purpose are not listed.
+const MOST_BANDS: usize = 64;
 
 /// Deepest nesting of elements; the schemas have 9.
 const MAX_ELEMENT_DEPTH: usize = 64;
@@ -54,9 +80,14 @@ pub fn parse(file: &str, text: &[u8]) -> Result<Document> {
 
 /// Read a file as a stream. `file` names it in messages.
 pub fn read(file: &str, reader: impl BufRead) -> Result<Document> {
+    read_band(file, reader, Band::Visible)
+}
+
+/// [`read`], of one band.
+pub fn read_band(file: &str, reader: impl BufRead, wanted: Band) -> Result<Document> {
     let file: Arc<str> = file.into();
     let (source, skipped) = source::begin(&file, reader)?;
-    let mut parser = Parser::new(file.clone());
+    let mut parser = Parser { wanted, ..Parser::new(file.clone()) };
     if skipped > 0 {
         parser.document.warnings.push(format!("skipped {skipped} bytes before the XML begins"));
     }
@@ -69,7 +100,11 @@ pub fn read(file: &str, reader: impl BufRead) -> Result<Document> {
         let place = reader.get_ref().place(&file);
         markup.clear();
         match reader.read_event_into(&mut markup).map_err(|e| broken(&file, place.clone(), e))? {
-            Event::Start(tag) => parser.open(tag.local_name().into_inner(), &place)?,
+            Event::Start(tag) => {
+                parser.open(tag.local_name().into_inner(), &place)?;
+                let unit = tag.attributes().flatten().find(|a| a.key.local_name().as_ref() == "unit");
+                parser.unit = unit.map_or(String::new(), |a| a.value.trim().to_ascii_lowercase());
+            }
             Event::End(_) => parser.close(&place)?,
             Event::CData(chunk) => {
                 let wrong = |w: Wrong| Error::input(place, w.message);
@@ -97,8 +132,11 @@ fn broken(file: &str, place: Location, error: quick_xml::Error) -> Error {
 /// Where we are in the document, and what has been said so far.
 struct Parser {
     file: Arc<str>,
+    wanted: Band,
     document: Document,
     path: Vec<String>,
+    /// Attribute of the innermost element.
+    unit: String,
     /// Text of the innermost element, if it is a word.
     word: Vec<u8>,
     /// … or its numbers, if it holds them.
@@ -124,8 +162,10 @@ impl Parser {
     fn new(file: Arc<str>) -> Self {
         Self {
             file,
+            wanted: Band::Visible,
             document: Document::default(),
             path: Vec::new(),
+            unit: String::new(),
             word: Vec::new(),
             numbers: None,
             values_left: MAX_VALUES,
@@ -162,7 +202,7 @@ impl Parser {
     }
 
     fn band_is_used(&self) -> bool {
-        BANDS.iter().any(|b| b.eq_ignore_ascii_case(&self.band))
+        self.wanted.names().iter().any(|b| b.eq_ignore_ascii_case(&self.band))
     }
 
     fn open(&mut self, name: &str, place: &Location) -> Result<()> {
@@ -254,6 +294,9 @@ impl Parser {
         match (parent, name) {
             ("Material", "Name") => self.document.name = self.word(),
             ("Material", "Manufacturer") => self.document.manufacturer = self.word(),
+            ("Material", "Comments") => self.document.comments = self.word(),
+            // Files without a thickness leave it empty; nothing here depends on it.
+            ("Material", "Thickness") => self.document.thickness_m = self.length_m(),
             ("DataDefinition", "IncidentDataStructure") => self.document.structure = self.word(),
             ("AngleBasis", "AngleBasisName") => self.basis.name = self.word(),
             ("ThetaBounds", "LowerTheta") => self.basis.lower_theta_deg = Some(self.number().map_err(wrong)?),
@@ -266,7 +309,13 @@ impl Parser {
             ("DataDefinition", "AngleBasis") => {
                 self.bases.define(std::mem::take(&mut self.basis)).map_err(wrong)?;
             }
-            ("WavelengthData", "Wavelength") => self.band = self.word(),
+            ("WavelengthData", "Wavelength") => {
+                self.band = self.word();
+                let bands = &mut self.document.bands;
+                if bands.len() < MOST_BANDS && !bands.contains(&self.band) {
+                    bands.push(self.band.clone());
+                }
+            }
             ("WavelengthDataBlock", "WavelengthDataDirection") => self.block.direction = self.word(),
             ("WavelengthDataBlock", "ColumnAngleBasis") => self.block.column_basis = self.word(),
             ("WavelengthDataBlock", "RowAngleBasis") => self.block.row_basis = self.word(),
@@ -286,6 +335,19 @@ impl Parser {
             .ok_or_else(|| format!("'{}' is not a number", word.chars().take(40).collect::<String>()))
     }
 
+    /// A length [m] with its unit, as Radiance has them; none if it is not one.
+    fn length_m(&self) -> Option<f64> {
+        let unit = match self.unit.as_str() {
+            "" | "meter" => 1.0,
+            "millimeter" => 1e-3,
+            "centimeter" => 1e-2,
+            "inch" => 0.0254,
+            "foot" => 0.3048,
+            _ => return None,
+        };
+        self.number().ok().filter(|length| *length >= 0.0).map(|length| length * unit)
+    }
+
     fn end_numbers(&mut self, place: &Location) -> Result<()> {
         let Some(numbers) = self.numbers.take() else { return Ok(()) };
         let values = numbers.finish().map_err(|message| {
@@ -300,7 +362,7 @@ impl Parser {
     fn end_block(&mut self, place: &Location) {
         let mut block = std::mem::take(&mut self.block);
         if self.band_is_used() {
-            block.band.clone_from(&self.band);
+            block.band = if self.wanted == Band::Visible { self.band.clone() } else { "Visible".into() };
             block.end = place.clone();
             self.drafts.push(block);
         }
@@ -316,7 +378,8 @@ impl Parser {
             self.document.blocks.push(block);
         }
         if !self.document.blocks.iter().any(|b| b.band.eq_ignore_ascii_case("Visible")) {
-            return Err(Error::input(end, "no WavelengthData for the Visible band"));
+            let name = self.wanted.names()[0];
+            return Err(Error::input(end, format!("no WavelengthData for the {name} band")));
         }
         Ok(self.document)
     }

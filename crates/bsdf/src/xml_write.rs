@@ -1,4 +1,7 @@
-//! Writing a BSDF as LBNL XML (schema 1.4, the form that Radiance and WINDOW read).
+//! Writing a BSDF as LBNL XML, the form that Radiance and WINDOW read.
+//!
+//! Matrices are valid by LBNL's schema 1.7.5, but for the namespace, which the schema has not and all files have. Tensor trees follow
+//! Radiance's addition to it: the schema knows matrices alone. The same tables give the same bytes.
 //!
 //! Numbers are written in the fewest digits that give the same 32-bit value back. Colour goes beside the luminous values as
 //! Radiance reads it: CIE X and Z of matrices, u' and v' of trees.
@@ -11,18 +14,36 @@ use crate::{
     tree::Tree,
 };
 use std::fmt::Write;
-use sunpeak_core::Vec3;
+use sunpeak_core::{Error, Result, Vec3};
+
+/// Bands by their names in the file: what is visible, and all of the sun.
+const BANDS: [&str; 2] = ["Visible", "Solar"];
 
 /// u' and v' of equal-energy white, for cells without light (CIE 15).
 const WHITE_UV: [f64; 2] = [4.0 / 19.0, 9.0 / 19.0];
 
 /// One side and mode as it is written.
 pub(crate) struct Component<'a> {
+    /// `Visible` or `Solar`.
+    pub band: &'static str,
     /// `Transmission Front` …
     pub direction: &'static str,
     pub luminous: &'a Table,
     /// CIE X and Z in the same cells.
     pub color: Option<&'a [Vec<f32>; 2]>,
+}
+
+/// What a file says of its product beside the tables, where it is not to say what the BSDF says of itself.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Label {
+    /// Name of the product.
+    pub name: Option<String>,
+    /// Who makes it.
+    pub manufacturer: Option<String>,
+    /// Thickness [m].
+    pub thickness_m: Option<f64>,
+    /// How the tables were made, and their statistical error.
+    pub comments: Option<String>,
 }
 
 /// Which cells a tree is written in.
@@ -37,33 +58,79 @@ pub(crate) enum Leaves {
 impl Bsdf {
     /// The text of an LBNL XML file with the tables of this BSDF.
     pub fn to_xml(&self) -> String {
-        let own = self.own_distributions();
-        let components: Vec<Component> = own
-            .into_iter()
-            .map(|(direction, d)| Component { direction, luminous: d.luminous(), color: d.color() })
-            .collect();
-        self.xml_of(&components, Leaves::Merged)
+        self.xml_of(&self.components(BANDS[0]), Leaves::Merged)
+    }
+
+    /// [`Self::to_xml`] under another label, and with the luminous tables of another BSDF as the solar band beside it.
+    pub fn to_xml_as(&self, label: &Label, solar: Option<&Self>) -> Result<String> {
+        let mut components = self.components(BANDS[0]);
+        if let Some(solar) = solar {
+            if self.is_matrix() != solar.is_matrix() || !self.is_matrix() && self.structure != solar.structure
+            {
+                return Err(Error::value(format!(
+                    "visible tables are {}, solar ones {}; a file has one kind: expected both in the same basis",
+                    self.structure, solar.structure
+                )));
+            }
+            let solar = solar.components(BANDS[1]);
+            components.extend(solar.into_iter().map(|c| Component { color: None, ..c }));
+        }
+        Ok(self.text(&components, Leaves::Merged, label))
+    }
+
+    fn components(&self, band: &'static str) -> Vec<Component<'_>> {
+        let own = self.own_distributions().into_iter();
+        own.map(|(direction, d)| Component { band, direction, luminous: d.luminous(), color: d.color() })
+            .collect()
+    }
+
+    fn is_matrix(&self) -> bool {
+        self.own_distributions().iter().any(|(_, d)| matches!(d.luminous(), Table::Matrix(_)))
     }
 
     /// The text of an LBNL XML file with other tables under this BSDF's name.
     pub(crate) fn xml_of(&self, components: &[Component], leaves: Leaves) -> String {
+        self.text(components, leaves, &Label::default())
+    }
+
+    fn text(&self, components: &[Component], leaves: Leaves, label: &Label) -> String {
         let mut out = String::new();
         // Writing to a string cannot fail.
-        let _ = self.write(&mut out, components, leaves);
+        let _ = self.write(&mut out, components, leaves, label);
         out
     }
 
-    fn write(&self, out: &mut String, components: &[Component], leaves: Leaves) -> std::fmt::Result {
+    fn write(
+        &self,
+        out: &mut String,
+        components: &[Component],
+        leaves: Leaves,
+        label: &Label,
+    ) -> std::fmt::Result {
+        let own = |other: &'_ Option<String>, own: &str| escaped(other.as_deref().unwrap_or(own));
         writeln!(out, r#"<?xml version="1.0" encoding="UTF-8"?>"#)?;
         writeln!(
             out,
             r#"<WindowElement xmlns="http://windows.lbl.gov" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xsi:schemaLocation="http://windows.lbl.gov/BSDF-v1.4.xsd">"#
         )?;
-        writeln!(out, "<WindowElementType>System</WindowElementType>\n<FileType>BSDF</FileType>")?;
+        writeln!(
+            out,
+            "<WindowElementType>System</WindowElementType>\n<FileType>BSDF</FileType>\n<Checksum></Checksum>"
+        )?;
         writeln!(out, "<Optical>\n<Layer>\n\t<Material>")?;
-        writeln!(out, "\t\t<Name>{}</Name>", escaped(&self.name))?;
-        writeln!(out, "\t\t<Manufacturer>{}</Manufacturer>", escaped(&self.manufacturer))?;
-        writeln!(out, "\t\t<DeviceType>Other</DeviceType>\n\t</Material>")?;
+        writeln!(out, "\t\t<Name>{}</Name>", own(&label.name, &self.name))?;
+        writeln!(out, "\t\t<Manufacturer>{}</Manufacturer>", own(&label.manufacturer, &self.manufacturer))?;
+        if let Some(thickness) = label.thickness_m.or(self.thickness_m) {
+            // Millimetres, as WINDOW's own files: its readers take the number without looking at the unit. To the nanometre.
+            let millimetres = (thickness * 1e9).round() / 1e6;
+            writeln!(out, "\t\t<Thickness unit=\"Millimeter\">{millimetres}</Thickness>")?;
+        }
+        writeln!(out, "\t\t<DeviceType>Other</DeviceType>")?;
+        let comments = own(&label.comments, &self.comments);
+        if !comments.is_empty() {
+            writeln!(out, "\t\t<Comments>{comments}</Comments>")?;
+        }
+        writeln!(out, "\t</Material>")?;
         writeln!(
             out,
             "\t<DataDefinition>\n\t\t<IncidentDataStructure>{}</IncidentDataStructure>",
@@ -116,6 +183,8 @@ impl Bsdf {
 }
 
 fn escaped(text: &str) -> String {
+    // XML has no control characters but these.
+    let text: String = text.chars().filter(|c| !c.is_control() || matches!(c, '\n' | '\t')).collect();
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
@@ -135,10 +204,10 @@ fn write_basis(out: &mut String, basis: &AngleBasis) -> std::fmt::Result {
 }
 
 fn write_component(out: &mut String, component: &Component, leaves: Leaves) -> std::fmt::Result {
-    let Component { direction, luminous, color } = component;
+    let Component { band, direction, luminous, color } = component;
     // Equal luminous values may have different colours: then no cells are put together.
     let leaves = if color.is_some() { Leaves::Kept } else { leaves };
-    write_block(out, "Visible", direction, luminous, leaves)?;
+    write_block(out, band, direction, luminous, leaves)?;
     let Some([x, z]) = color else { return Ok(()) };
     let with = |values: Vec<f32>| luminous.with_values(values);
     let bands = match luminous {
@@ -177,12 +246,15 @@ fn write_block(
     let detector = match band {
         "CIE-X" => "ASTM E308 1931 X.dsp",
         "CIE-Z" => "ASTM E308 1931 Z.dsp",
+        "Solar" => "None",
         _ => "ASTM E308 1931 Y.dsp",
     };
-    let kind = if direction.starts_with("Reflection") { "BRDF" } else { "BTDF" };
+    // What WINDOW names where nothing else is known.
+    let source =
+        if band == "Solar" { "ASTM E891 Table 1 Direct AM1_5.ssp" } else { "CIE Illuminant D65 1nm.ssp" };
     writeln!(out, "\t<WavelengthData>\n\t\t<LayerNumber>System</LayerNumber>")?;
     writeln!(out, "\t\t<Wavelength unit=\"Integral\">{band}</Wavelength>")?;
-    writeln!(out, "\t\t<SourceSpectrum>CIE Illuminant D65 1nm.ssp</SourceSpectrum>")?;
+    writeln!(out, "\t\t<SourceSpectrum>{source}</SourceSpectrum>")?;
     writeln!(out, "\t\t<DetectorSpectrum>{detector}</DetectorSpectrum>\n\t\t<WavelengthDataBlock>")?;
     writeln!(out, "\t\t\t<WavelengthDataDirection>{direction}</WavelengthDataDirection>")?;
     match table {
@@ -192,7 +264,8 @@ fn write_block(
         }
         Table::Tree(_) => writeln!(out, "\t\t\t<AngleBasis>LBNL/Shirley-Chiu</AngleBasis>")?,
     }
-    writeln!(out, "\t\t\t<ScatteringDataType>{kind}</ScatteringDataType>\n\t\t\t<ScatteringData>")?;
+    // The schema calls all of them BTDF, reflection too.
+    writeln!(out, "\t\t\t<ScatteringDataType>BTDF</ScatteringDataType>\n\t\t\t<ScatteringData>")?;
     match table {
         Table::Matrix(m) => write_matrix(out, m)?,
         Table::Tree(t) => write_node(out, t, leaves, [0.0; 4], 1.0)?,

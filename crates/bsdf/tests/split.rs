@@ -145,7 +145,11 @@ fn other_products_are_close_to_their_closed_forms() {
     // Largest angle, and limits of the mean error. Slats make kinks in T, which a patch ten degrees wide rounds off.
     let products: [(&dyn Product, f64, [f64; 2]); 5] = [
         (&Weave::new(fabric, 55.0, Some([1.4, 0.3])).unwrap(), 45.0, [0.015, 0.006]),
-        (&Perforated { open_area: 0.2, thickness: 0.5, from_walls: 0.2 }, 50.0, [0.01, 0.005]),
+        (
+            &Perforated { open_area: 0.2, thickness: 0.5, from_walls: 0.2, reflectance: 0.5 },
+            50.0,
+            [0.01, 0.005],
+        ),
         (&Pane { index: 1.52, internal: 1.0 }, 70.0, [0.015, 0.015]),
         (&Pane { index: 1.52, internal: 0.4 }, 70.0, [0.015, 0.015]),
         (&Blind { width: 1.1, tilt_deg: 20.0, scattered: 0.1 }, 75.0, [0.05, 0.015]),

@@ -146,6 +146,9 @@ impl PyBsdf {
         let about = PyDict::new(py);
         about.set_item("name", &self.0.name)?;
         about.set_item("manufacturer", &self.0.manufacturer)?;
+        about.set_item("thickness_m", self.0.thickness_m)?;
+        about.set_item("comments", &self.0.comments)?;
+        about.set_item("bands", &self.0.bands)?;
         about.set_item("structure", &self.0.structure)?;
         about.set_item("warnings", &self.0.warnings)?;
         about.set_item("components", components)?;

@@ -131,12 +131,6 @@ pub fn instrument_seen(py: Python<'_>, bsdf: &PyBsdf, front: bool) -> Option<f64
     py.detach(|| bsdf.0.instrument_seen(front))
 }
 
-/// The text of an LBNL XML file.
-#[pyfunction]
-pub fn bsdf_xml(py: Python<'_>, bsdf: &PyBsdf) -> String {
-    py.detach(|| bsdf.0.to_xml())
-}
-
 /// Write the split to a folder.
 #[pyfunction]
 pub fn save_split(py: Python<'_>, bsdf: &PyBsdf, folder: PathBuf) -> PyResult<Vec<PathBuf>> {

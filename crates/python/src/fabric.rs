@@ -1,7 +1,9 @@
-//! Fabrics of our own making, as the text of an LBNL XML file.
+//! Fabrics of our own making.
 
+use crate::bsdf::PyBsdf;
 use crate::error::OrRaise;
 use pyo3::prelude::*;
+use std::sync::Arc;
 use sunpeak_bsdf::synthetic::{Basis, Fabric, RollerBlind};
 
 /// Tabulate a fabric from its formulas: `basis` is `klems`, `klems-half`, `klems-quarter`, `t3-N` or `t4-N`.
@@ -23,7 +25,7 @@ pub fn fabric_xml(
     py.detach(|| Ok(fabric.tabulate(basis)?.to_xml())).or_raise()
 }
 
-fn roller_blind(
+fn of_datasheet(
     tau_nn: f64,
     tau_nh: f64,
     rho_front: f64,
@@ -40,9 +42,9 @@ fn roller_blind(
     Ok(blind)
 }
 
-/// Tabulate a roller blind from its datasheet.
+/// Tabulate a roller blind from its datasheet; its through part is kept as the model has it.
 #[pyfunction]
-pub fn roller_blind_xml(
+pub fn roller_blind(
     py: Python<'_>,
     basis: &str,
     tau_nn: f64,
@@ -50,10 +52,11 @@ pub fn roller_blind_xml(
     rho_front: f64,
     rho_back: f64,
     cutoff_deg: Option<f64>,
-) -> PyResult<String> {
-    let blind = roller_blind(tau_nn, tau_nh, rho_front, rho_back, cutoff_deg)?;
+) -> PyResult<PyBsdf> {
+    let blind = of_datasheet(tau_nn, tau_nh, rho_front, rho_back, cutoff_deg)?;
     let basis: Basis = basis.parse().or_raise()?;
-    py.detach(|| Ok(blind.tabulate(basis)?.to_xml())).or_raise()
+    let bsdf = py.detach(|| blind.tabulate_exact(basis)).or_raise()?;
+    Ok(PyBsdf(Arc::new(bsdf)))
 }
 
 /// Through transmittance, transmittance in all [-], and the cut-off angle [deg], at an angle of incidence [rad].
@@ -66,6 +69,6 @@ pub fn roller_blind_transmittance(
     cutoff_deg: Option<f64>,
     incidence_rad: f64,
 ) -> PyResult<(f64, f64, f64)> {
-    let blind = roller_blind(tau_nn, tau_nh, rho_front, rho_back, cutoff_deg)?;
+    let blind = of_datasheet(tau_nn, tau_nh, rho_front, rho_back, cutoff_deg)?;
     Ok((blind.through(incidence_rad), blind.total(incidence_rad), blind.cutoff_deg()))
 }

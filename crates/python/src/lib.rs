@@ -2,17 +2,21 @@
 
 mod arrays;
 mod bsdf;
+mod bsdf_files;
 mod bsdf_report;
 mod error;
 mod expressions;
 mod fabric;
+mod generate;
 mod glare;
 mod goal;
+mod model;
 mod picture;
 mod render;
 mod scene;
 mod sky;
 mod synthetic;
+mod system;
 mod watch;
 
 use pyo3::prelude::*;
@@ -23,8 +27,10 @@ mod _core {
     #[pymodule_export]
     use super::bsdf::PyBsdf;
     #[pymodule_export]
+    use super::bsdf_files::{bsdf_xml, convert_bsdf, load_solar};
+    #[pymodule_export]
     use super::bsdf_report::{
-        bsdf_report, bsdf_xml, exit_cells, incident_cells, instrument_seen, probe_directions, save_split,
+        bsdf_report, exit_cells, incident_cells, instrument_seen, probe_directions, save_split,
         through_interval,
     };
     #[pymodule_export]
@@ -32,9 +38,13 @@ mod _core {
     #[pymodule_export]
     use super::expressions::evaluate;
     #[pymodule_export]
-    use super::fabric::{fabric_xml, roller_blind_transmittance, roller_blind_xml};
+    use super::fabric::{fabric_xml, roller_blind, roller_blind_transmittance};
+    #[pymodule_export]
+    use super::generate::{PyGenerated, generate_bsdf, straight_transmittance};
     #[pymodule_export]
     use super::glare::{glare, glare_sources, position_indices};
+    #[pymodule_export]
+    use super::model::{model_bsdf, model_value};
     #[pymodule_export]
     use super::picture::PyPicture;
     #[pymodule_export]
@@ -44,7 +54,9 @@ mod _core {
     #[pymodule_export]
     use super::sky::PySky;
     #[pymodule_export]
-    use super::synthetic::{synthetic_bsdf, synthetic_through};
+    use super::synthetic::{exact_bsdf, synthetic_bsdf, synthetic_through};
+    #[pymodule_export]
+    use super::system::{PyLayer, PySystem, slab_optics, visible_share};
 
     use pyo3::prelude::*;
 

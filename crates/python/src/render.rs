@@ -12,14 +12,14 @@ use pyo3::prelude::*;
 use std::sync::Arc;
 use sunpeak_core::{Rgb, Vec3};
 use sunpeak_render::{
-    FirstSurface, PictureJudge, RenderOptions, World, WorldOptions, first_surfaces, render_until,
-    trace_irradiance, trace_radiance,
+    FirstDeltas, FirstSurface, PictureJudge, RenderOptions, World, WorldOptions, first_deltas,
+    first_surfaces, render_until, trace_irradiance, trace_radiance,
 };
 use sunpeak_scene::Picture;
 
 /// A scene compiled for rendering.
 #[pyclass(frozen, name = "World", module = "sunpeak._core")]
-pub struct PyWorld(Arc<World>);
+pub struct PyWorld(pub Arc<World>);
 
 #[pymethods]
 impl PyWorld {
@@ -50,10 +50,39 @@ impl PyWorld {
         let (points, normals) = (place(|first| first.point), place(|first| first.normal));
         Ok((numbers(py, distances), rows(py, &points), rows(py, &normals), PyArray1::from_vec(py, surfaces)))
     }
+
+    /// What the first surfaces mirror and let through: points, mirrored shares, their directions, straight shares (n, 3), and which show
+    /// things at their distance (n,); zeros where nothing is met or what shines.
+    fn first_deltas<'py>(
+        &self,
+        py: Python<'py>,
+        origins: PyReadonlyArray2<'py, f64>,
+        directions: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<FirstDeltaRows<'py>> {
+        let (points, towards) = (vectors(&origins, "origins")?, vectors(&directions, "directions")?);
+        let rays: Vec<_> = points.into_iter().zip(towards).collect();
+        let found = py.detach(|| first_deltas(&self.0, &rays)).or_raise()?;
+        let part = |part: fn(&FirstDeltas) -> Vec3| {
+            let vectors: Vec<Vec3> =
+                found.iter().map(|deltas| deltas.as_ref().map_or(Vec3::ZERO, part)).collect();
+            rows(py, &vectors)
+        };
+        let is_plane_glass = found.iter().map(|deltas| deltas.is_some_and(|d| d.is_plane_glass)).collect();
+        Ok((
+            part(|d| d.point),
+            part(|d| d.mirrored),
+            part(|d| d.mirrored_direction),
+            part(|d| d.straight),
+            PyArray1::from_vec(py, is_plane_glass),
+        ))
+    }
 }
 
 /// Distances, points, normals, surfaces.
 type FirstSurfaces<'py> = (Numbers<'py>, Rows<'py>, Rows<'py>, Bound<'py, PyArray1<i64>>);
+
+/// Points, mirrored shares, mirrored directions, straight shares, whether glass is plane.
+type FirstDeltaRows<'py> = (Rows<'py>, Rows<'py>, Rows<'py>, Rows<'py>, Bound<'py, PyArray1<bool>>);
 
 fn options(
     samples: Option<u32>,

@@ -89,6 +89,11 @@ impl PyScene {
         .collect()
     }
 
+    /// Lowest and highest coordinates of all surfaces; None if none is anywhere.
+    fn bounds(&self) -> Option<([f64; 3], [f64; 3])> {
+        self.0.bounds().map(|[low, high]| (low.to_array(), high.to_array()))
+    }
+
     #[getter]
     fn surface_names(&self) -> Vec<&str> {
         self.0.surfaces.iter().map(|surface| surface.name.as_str()).collect()

@@ -9,7 +9,8 @@ use pyo3::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
 use sunpeak_bsdf::synthetic::{
-    Basis, Blind, Diffuser, Fabric, Goniophotometer, Pane, Panel, Perforated, Product, Weave, Woven, tabulate,
+    Basis, Blind, Diffuser, Fabric, Goniophotometer, Mesh, Pane, Panel, Perforated, Product, Weave, Woven,
+    tabulate, tabulate_exact,
 };
 
 type Numbered = HashMap<String, f64>;
@@ -39,11 +40,26 @@ fn product(kind: &str, numbers: &Numbered) -> PyResult<Box<dyn Product>> {
                 Box::new(Weave::new(fabric, take("cut_off_y_deg")?, Some(tint)).or_raise()?)
             }
         }
-        "perforated" => Box::new(Perforated {
-            open_area: take("open_area")?,
-            thickness: take("thickness")?,
-            from_walls: take("from_walls")?,
-        }),
+        "perforated" => {
+            let sheet = Perforated {
+                open_area: take("open_area")?,
+                thickness: take("thickness")?,
+                from_walls: take("from_walls")?,
+                reflectance: take("reflectance")?,
+            };
+            sheet.check().or_raise()?;
+            Box::new(sheet)
+        }
+        "mesh" => {
+            let mesh = Mesh {
+                pitch: [take("long_way")?, take("short_way")?],
+                strand: take("strand")?,
+                thickness: take("thickness")?,
+                reflectance: take("reflectance")?,
+            };
+            mesh.check().or_raise()?;
+            Box::new(mesh)
+        }
         "pane" => Box::new(Pane { index: take("index")?, internal: take("internal")? }),
         "blind" => Box::new(Blind {
             width: take("width")?,
@@ -82,6 +98,15 @@ pub fn synthetic_bsdf(
     let basis: Basis = basis.parse().or_raise()?;
     let seen_by = Goniophotometer { rays, value_noise, fwhm_deg, seed };
     let bsdf = py.detach(|| tabulate(product.as_ref(), basis, &seen_by)).or_raise()?;
+    Ok(PyBsdf(Arc::new(bsdf)))
+}
+
+/// Tabulate a product and keep its through part as its closed form has it.
+#[pyfunction]
+pub fn exact_bsdf(py: Python<'_>, kind: &str, numbers: Numbered, basis: &str) -> PyResult<PyBsdf> {
+    let product = product(kind, &numbers)?;
+    let basis: Basis = basis.parse().or_raise()?;
+    let bsdf = py.detach(|| tabulate_exact(product.as_ref(), basis)).or_raise()?;
     Ok(PyBsdf(Arc::new(bsdf)))
 }
 

@@ -116,6 +116,11 @@ impl Accel {
         Ok(Self { bvh, leaves, precedence, analytic, center, bounds, padding })
     }
 
+    /// The box around all surfaces; none if there are none.
+    pub fn extent(&self) -> Option<Bounds> {
+        self.bounds.map(|b| widened(b, -self.padding))
+    }
+
     pub fn shape(&self, index: u32) -> &Analytic {
         &self.analytic[index as usize]
     }

@@ -70,8 +70,15 @@ impl Backlights {
         all
     }
 
-    fn find_side(&mut self, world: &World, object: u32, triangles: &[Triangle], at_front: bool) -> Option<usize> {
-        let Object { material: shade, facing: Facing::Flat(normal), .. } = world.objects[object as usize] else {
+    fn find_side(
+        &mut self,
+        world: &World,
+        object: u32,
+        triangles: &[Triangle],
+        at_front: bool,
+    ) -> Option<usize> {
+        let Object { material: shade, facing: Facing::Flat(normal), .. } = world.objects[object as usize]
+        else {
             return None;
         };
         let Material::Table(table) = world.material(shade) else { return None };

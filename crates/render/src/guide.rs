@@ -8,9 +8,9 @@
 
 use crate::material::Table;
 use crate::shapes::{Ray, Triangle};
+use std::sync::Arc;
 use sunpeak_bsdf::{Bsdf, Mode, PeakRule};
 use sunpeak_core::{Frame, Vec3};
-use std::sync::Arc;
 
 /// Share of directions that go to the shades, and against the scattered suns. The rest, the surface's own, keeps every weight
 /// below 1/(1 - these) of what it would be without a guide.
@@ -54,9 +54,10 @@ pub(crate) struct ScatteredSun {
 impl ScatteredSun {
     /// `None` if the table scatters nothing of this sun to its other side. `sun` and `normal` are unit vectors in world axes.
     pub fn new(table: &Table, normal: Vec3, sun: Vec3) -> Option<Self> {
-        let frame = table.frame(normal);
+        let frame = table.level_frame(normal)?;
         let w_in = frame.to_local(sun);
-        let scatters = table.bsdf.hemispherical_smooth(w_in, Mode::Transmission, table.rule).max_element() > 0.0;
+        let scatters =
+            table.bsdf.hemispherical_smooth(w_in, Mode::Transmission, table.rule).max_element() > 0.0;
         scatters.then(|| Self { bsdf: table.bsdf.clone(), rule: table.rule, frame, w_in })
     }
 

@@ -174,12 +174,10 @@ impl Integrator<'_> {
     fn scatter(&self, path: &mut Path, met: &Met, branches: &mut Vec<Path>, sampler: &mut Sampler) -> bool {
         let smooth = &met.scattering.smooth;
         let Some((guide, rates)) = self.guided(path, smooth) else {
-            let (u, choice) = (sampler.next_2d(), sampler.next_1d());
-            let sample = smooth.sample(choice, u, sampler);
-            return sample.is_some_and(|sample| self.leave(path, met, &sample, sampler));
+            return smooth.draw(sampler).is_some_and(|sample| self.leave(path, met, &sample, sampler));
         };
         let point = met.arrival.point;
-        let mut go = |path: &mut Path, direction: Option<Vec3>, sampler: &mut Sampler| {
+        let go = |path: &mut Path, direction: Option<Vec3>, sampler: &mut Sampler| {
             let sample = direction.and_then(|direction| mixed(met, guide, &rates, direction));
             sample.is_some_and(|sample| self.leave(path, met, &sample, sampler))
         };
@@ -244,7 +242,8 @@ impl Integrator<'_> {
         let departure = Departure { point, pdf: sample.pdf * share, source_factor: sample.source_factor };
         let mut known = Rgb::ZERO;
         if let Some(backlight) = met.backlight {
-            known = self.known_light(backlight, sample, share) * glossy / weight.max(Rgb::splat(f64::MIN_POSITIVE));
+            known = self.known_light(backlight, sample, share) * glossy
+                / weight.max(Rgb::splat(f64::MIN_POSITIVE));
         }
         path.depart(departure, sample.direction, weight / share);
         path.known = known;
@@ -330,7 +329,14 @@ impl<'w> Met<'w> {
     fn air(air: &Air, point: Vec3, direction: Vec3) -> Self {
         let scattering = Scattering { smooth: Smooth::Phase(air.phase(direction)), ..Scattering::BLACK };
         let arrival = Arrival::new(point, -direction, direction);
-        Self { arrival, material: None, is_flat: true, scattering, shares: [0.0, 0.0, 0.0, 1.0], backlight: None }
+        Self {
+            arrival,
+            material: None,
+            is_flat: true,
+            scattering,
+            shares: [0.0, 0.0, 0.0, 1.0],
+            backlight: None,
+        }
     }
 
     /// Where light that is scattered starts: at the surface, and beyond what a table with thickness stands for.
@@ -355,7 +361,14 @@ impl<'w> Met<'w> {
         let arrival = Arrival::new(point, normal, -normal);
         let scattering =
             Scattering { smooth: Smooth::Sensor(Frame::from_normal(normal)), ..Scattering::BLACK };
-        Self { arrival, material: None, is_flat: true, scattering, shares: [0.0, 0.0, 0.0, 1.0], backlight: None }
+        Self {
+            arrival,
+            material: None,
+            is_flat: true,
+            scattering,
+            shares: [0.0, 0.0, 0.0, 1.0],
+            backlight: None,
+        }
     }
 
     /// Chance that a path goes on by the smooth lobes.

@@ -50,6 +50,7 @@ mod accel;
 mod backlight;
 mod exact_sun;
 mod film;
+mod goniophotometer;
 mod guide;
 mod integrator;
 mod light;
@@ -66,8 +67,12 @@ mod transmit;
 mod world;
 
 pub use film::{PictureJudge, render_picture, render_until};
+pub use goniophotometer::{
+    DEFAULT_COLUMN_SAMPLES, Edges, Generated, GeneratedColumn, GeneratedSide, GonioOptions, Side,
+    generate_bsdf, straight_transmittance,
+};
 pub use options::{DEFAULT_MAX_DEPTH, DEFAULT_SAMPLES, RenderOptions, WorldOptions};
-pub use probe::{FirstSurface, first_surfaces};
+pub use probe::{FirstDeltas, FirstSurface, first_deltas, first_surfaces};
 pub use sensor::{trace_irradiance, trace_radiance};
 pub use world::World;
 

@@ -1,9 +1,11 @@
 //! What rays meet first: distances, places, normals, for depth pictures and for sensors on surfaces.
 
+use crate::accel::Hit;
 use crate::shapes::Ray;
+use crate::world::{Facing, Seen};
 use crate::{World, material::EmitterKind, material::Material};
 use rayon::prelude::*;
-use sunpeak_core::{Error, Result, Vec3};
+use sunpeak_core::{Error, Result, Rgb, Vec3};
 
 /// The surface that a ray meets first.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,40 +20,89 @@ pub struct FirstSurface {
     pub surface: usize,
 }
 
+/// What the surface that a ray meets first mirrors and lets through straight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FirstDeltas {
+    /// Where it is met.
+    pub point: Vec3,
+    /// Share that is mirrored.
+    pub mirrored: Rgb,
+    /// Unit direction in which.
+    pub mirrored_direction: Vec3,
+    /// Share that goes straight on.
+    pub straight: Rgb,
+    /// Is it a plane pane, mirror or face of a solid, which shows things at their distance?
+    pub is_plane_glass: bool,
+}
+
 /// The first surface along each ray, given by origin and direction (of any length); `None` where there is none. An `illum` without
 /// anything to see instead is passed, as by a view ray.
 ///
 /// # Errors
 /// A ray that is not finite or has no direction.
 pub fn first_surfaces(world: &World, rays: &[(Vec3, Vec3)]) -> Result<Vec<Option<FirstSurface>>> {
-    let first = |(i, &(origin, towards)): (usize, &(Vec3, Vec3))| match towards.try_normalize() {
-        Some(direction) if origin.is_finite() => Ok(first_surface(world, Ray::new(origin, direction))),
+    each(rays, |ray| first_surface(world, ray))
+}
+
+/// What the first surface along each ray mirrors and lets through, as [`first_surfaces`] meets it; `None` where there is none, or one that
+/// shines. Of a mixture of materials the larger share counts.
+///
+/// # Errors
+/// A ray that is not finite or has no direction.
+pub fn first_deltas(world: &World, rays: &[(Vec3, Vec3)]) -> Result<Vec<Option<FirstDeltas>>> {
+    each(rays, |ray| deltas(world, ray))
+}
+
+fn each<T: Send>(rays: &[(Vec3, Vec3)], find: impl Fn(Ray) -> Option<T> + Sync) -> Result<Vec<Option<T>>> {
+    let found = |(i, &(origin, towards)): (usize, &(Vec3, Vec3))| match towards.try_normalize() {
+        Some(direction) if origin.is_finite() => Ok(find(Ray::new(origin, direction))),
         _ => Err(Error::value(format!(
             "ray {i} at {origin} has direction {towards}: not a place and a direction"
         ))),
     };
-    rays.par_iter().enumerate().map(first).collect()
+    rays.par_iter().enumerate().map(found).collect()
 }
 
-fn first_surface(world: &World, ray: Ray) -> Option<FirstSurface> {
+/// The hit, and the last part of the ray.
+fn first_hit(world: &World, ray: Ray) -> Option<(Hit, Ray)> {
     let mut segment = ray;
     loop {
         let hit = world.accel.closest(&segment, f64::INFINITY)?;
-        let object = world.object(&hit);
-        let arrival = world.arrival(&hit, &segment);
-        let is_invisible = matches!(world.material(object.material), Material::Emitter(emitter)
+        let is_invisible = matches!(world.material(world.object(&hit).material), Material::Emitter(emitter)
             if matches!(emitter.kind, EmitterKind::Illum { alternate: None }));
-        if is_invisible {
-            segment = Ray::past(arrival.point, ray.direction);
-            continue;
+        if !is_invisible {
+            return Some((hit, segment));
         }
-        return Some(FirstSurface {
-            distance: arrival.point.distance(ray.origin),
-            point: arrival.point,
-            normal: arrival.normal,
-            surface: world.surfaces[hit.object as usize] as usize,
-        });
+        segment = Ray::past(segment.at(hit.t), ray.direction);
     }
+}
+
+fn first_surface(world: &World, ray: Ray) -> Option<FirstSurface> {
+    let (hit, segment) = first_hit(world, ray)?;
+    let arrival = world.arrival(&hit, &segment);
+    Some(FirstSurface {
+        distance: arrival.point.distance(ray.origin),
+        point: arrival.point,
+        normal: arrival.normal,
+        surface: world.surfaces[hit.object as usize] as usize,
+    })
+}
+
+fn deltas(world: &World, ray: Ray) -> Option<FirstDeltas> {
+    let (hit, segment) = first_hit(world, ray)?;
+    let mut inside = world.inside_at(&segment);
+    let (seen, arrival) = world.meet(&hit, &segment, true, &mut inside, [0.0; 2], &mut || 0.5);
+    let Seen::Surface(material) = seen else { return None };
+    let is_plane = matches!(world.object(&hit).facing, Facing::Flat(_)) && arrival.bend == Vec3::ZERO;
+    let is_glass = matches!(material, Material::Glass(_) | Material::Mirror(_) | Material::Dielectric(_));
+    let scattering = material.scatter(&arrival, true);
+    Some(FirstDeltas {
+        point: arrival.point,
+        mirrored: scattering.mirrored,
+        mirrored_direction: arrival.mirrored(),
+        straight: scattering.straight,
+        is_plane_glass: is_plane && is_glass,
+    })
 }
 
 #[cfg(test)]

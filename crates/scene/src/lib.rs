@@ -12,6 +12,7 @@
 //! # Ok::<(), sunpeak_core::Error>(())
 //! ```
 
+mod bounds;
 mod check;
 mod command;
 mod compiled;
@@ -32,7 +33,7 @@ pub use disc_coverage::disc_coverage;
 pub use field::{DataArray, Field, RayState, Spectrum};
 pub use files::LoadOptions;
 pub use load::{Source, load_primitives};
-pub use picture::{BlockErrors, ExactSource, Picture};
+pub use picture::{BlockErrors, ExactSource, Picture, SpectralPicture};
 pub use scene::{
     Anisotropy, BsdfMaterial, ComponentModifier, FunctionMaterial, FunctionValue, Material, Medium, Mesh,
     Modifier, ModifierId, ModifierKind, Orientation, Pattern, Scene, Shape, Surface, Ward, Weight,

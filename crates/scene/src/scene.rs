@@ -231,7 +231,7 @@ pub struct Ward {
     pub anisotropy: Option<Anisotropy>,
 }
 
-/// A vector by which an anisotropic material is turned, to be projected on the surface.
+/// A vector by which a material is turned, to be projected on the surface.
 #[derive(Clone, Debug)]
 pub enum Orientation {
     /// World axes, of any length.
@@ -365,8 +365,8 @@ pub struct BsdfMaterial {
     pub thickness: f64,
     /// The XML file, found.
     pub file: PathBuf,
-    /// Up vector in world axes (the transform of the file applied).
-    pub up: Vec3,
+    /// Up vector.
+    pub up: Orientation,
     /// Does an xform mirror the frame (x = -(y cross z))?
     pub mirrored: bool,
     /// Diffuse reflectance added at the front.

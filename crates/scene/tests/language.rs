@@ -1,7 +1,7 @@
 //! What scene texts mean, and what is said about wrong ones.
 
 use sunpeak_core::Vec3;
-use sunpeak_scene::{LoadOptions, Material, ModifierKind, Pattern, Scene, Shape};
+use sunpeak_scene::{LoadOptions, Material, ModifierKind, Orientation, Pattern, Scene, Shape};
 use sunpeak_sky::{CieSky, SkyDistribution};
 
 fn scene(text: &str) -> Scene {
@@ -137,12 +137,13 @@ fn transforms_reach_the_frames_of_bsdfs() {
     let (Material::Bsdf(b), Material::Bsdf(a)) = (material(&read, 0), material(&read, 1)) else {
         panic!("{:?}", read.modifiers)
     };
+    let (Orientation::Fixed(b_up), Orientation::Fixed(a_up)) = (&b.up, &a.up) else { panic!("{b:?} {a:?}") };
     assert!(
-        (b.up - Vec3::NEG_Y).length() < 1e-12 && b.mirrored && (b.thickness - 0.2).abs() < 1e-12,
+        (b_up - Vec3::NEG_Y).length() < 1e-12 && b.mirrored && (b.thickness - 0.2).abs() < 1e-12,
         "{b:?}"
     );
     assert_eq!((b.back_diffuse, b.diffuse_transmission), (Vec3::new(0.4, 0.5, 0.6), Vec3::ZERO));
-    assert!(a.extract_peak && !a.mirrored && a.up == Vec3::Y && a.thickness == 0.0);
+    assert!(a.extract_peak && !a.mirrored && *a_up == Vec3::Y && a.thickness == 0.0);
 }
 
 #[test]
@@ -169,7 +170,8 @@ fn what_cannot_be_used_matters_only_when_it_is_used() {
     let used = message(&format!("{unused}q sphere s 0 0 4 0 0 0 1"));
     assert_eq!(
         used,
-        "t.rad:1:1: specpict \"c\": Radiance's \"specpict\" is not supported yet (used by sphere \"s\" at t.rad:5:1)"
+        "t.rad:1:1: wrong number of arguments of specpict \"c\": expected at least 5 string arguments (a function, a hyperspectral \
+         picture, a function file and two coordinates), found 4 (used by sphere \"s\" at t.rad:5:1)"
     );
 }
 
@@ -208,8 +210,8 @@ fn wrong_texts_are_said_to_be_wrong_and_where() {
             "aBSDF \"b\": cannot find the file \"no.xml\"; looked for no.xml (used by",
         ),
         (
-            "void aBSDF b 5 no.xml Nx 0 1 . 0 0 b sphere s 0 0 4 0 0 0 1".into(),
-            "the up vector varies over the surface: expected a constant",
+            "void BSDF b 6 Nx no.xml 0 0 1 . 0 0 b sphere s 0 0 4 0 0 0 1".into(),
+            "the thickness varies over the surface: expected a constant",
         ),
         (
             "void brightfunc f 2 skybr skybright.cal 0 7 1 1 1 1 0 0 1 f sphere s 0 0 4 0 0 0 1".into(),

@@ -8,8 +8,14 @@ import typer
 
 from sunpeak.blinds import Blind
 from sunpeak.bsdf_plot import Kind, is_picture, plot_bsdf
+from sunpeak.cli.bsdf_convert import convert
 from sunpeak.cli.bsdf_fabric import fabric
+from sunpeak.cli.bsdf_formula import HELP as FORMULA_HELP
+from sunpeak.cli.bsdf_formula import formula
+from sunpeak.cli.bsdf_generate import generate
+from sunpeak.cli.bsdf_sheets import mesh, perforated
 from sunpeak.cli.bsdf_show import show
+from sunpeak.cli.bsdf_system import system
 from sunpeak.cli.options import Quiet
 from sunpeak.cli.output import emit_json, note
 from sunpeak.cli.values import parse_instrument, parse_numbers
@@ -18,6 +24,12 @@ from sunpeak.scattering import Bsdf, Peak, side_of_ray
 
 app = typer.Typer(no_args_is_help=True, help="Look into a BSDF file.")
 app.command("fabric")(fabric)
+app.command("mesh")(mesh)
+app.command("perforated")(perforated)
+app.command("system")(system)
+app.command("formula", help=FORMULA_HELP)(formula)
+app.command("convert")(convert)
+app.command("generate")(generate)
 
 File = Annotated[Path, typer.Argument(help="LBNL XML file, or the folder of a split.")]
 Instrument = Annotated[

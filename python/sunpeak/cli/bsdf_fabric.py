@@ -44,6 +44,20 @@ def fabric(
     rho_back: Annotated[
         Any, _share("--rho-back", "Reflectance of the side towards the room.", DATASHEET, "as the front")
     ] = None,
+    solar_tau_nn: Annotated[
+        Any, _share("--solar-tau-nn", "Solar: straight through.", DATASHEET, "as --tau-nn: holes have no colour")
+    ] = None,
+    solar_tau_nh: Annotated[Any, _share("--solar-tau-nh", "Solar: in all. Writes both bands.", DATASHEET)] = None,
+    solar_rho_front: Annotated[Any, _share("--solar-rho-front", "Solar: towards the sun.", DATASHEET)] = None,
+    solar_rho_back: Annotated[
+        Any, _share("--solar-rho-back", "Solar: towards the room.", DATASHEET, "as the front")
+    ] = None,
+    split: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder for the exact straight-through part beside the rest (visible).", rich_help_panel=DATASHEET
+        ),
+    ] = None,
     openness: Annotated[
         Any, _share("--openness", "Straight through at normal incidence.", FORMULA, _default("openness"))
     ] = None,
@@ -85,7 +99,12 @@ def fabric(
         "reflectance": reflectance,
     }
     given = {name: value for name, value in formula.items() if value is not None}
+    solar = (solar_tau_nn, solar_tau_nh, solar_rho_front, solar_rho_back)
     if tau_nn is None and tau_nh is None and rho_front is None and rho_back is None:
+        if split is not None or any(value is not None for value in solar):
+            raise typer.BadParameter(
+                "--split and --solar-…: for fabrics from a datasheet; expected --tau-nn and --tau-nh"
+            )
         known = {"openness": openness, "cut_off_deg": cut_off}
         given |= {name: value for name, value in known.items() if value is not None}
         Fabric(**given).write(output, basis)
@@ -95,7 +114,29 @@ def fabric(
         raise typer.BadParameter(
             f"{names}: for fabrics from a formula; expected none of it beside a datasheet's numbers"
         )
-    _of_datasheet(tau_nn, tau_nh, rho_front, rho_back, openness, cut_off, quiet).write(output, basis)
+    visible = _of_datasheet(tau_nn, tau_nh, rho_front, rho_back, openness, cut_off, quiet)
+    visible.write(output, basis, solar=_solar(visible, *solar), split=split)
+
+
+def _solar(
+    visible: RollerBlind,
+    tau_nn: float | None,
+    tau_nh: float | None,
+    rho_front: float | None,
+    rho_back: float | None,
+) -> RollerBlind | None:
+    """Put the solar values together; what goes through holes is the same at all wavelengths."""
+    if tau_nn is None and tau_nh is None and rho_front is None and rho_back is None:
+        return None
+    if tau_nh is None or rho_front is None:
+        raise typer.BadParameter("solar values need --solar-tau-nh and --solar-rho-front")
+    return RollerBlind(
+        visible.tau_nn if tau_nn is None else tau_nn,
+        tau_nh,
+        rho_front,
+        rho_front if rho_back is None else rho_back,
+        visible.cut_off(),
+    )
 
 
 def _of_datasheet(

@@ -11,6 +11,7 @@ from sunpeak.cli.values import parse_size
 from sunpeak.files import check_target
 from sunpeak.images import save_false_colour, save_png, tonemap
 from sunpeak.pictures import Picture
+from sunpeak.rad_input import RadInput, is_rad_input
 from sunpeak.rendering import render
 from sunpeak.scenes import View
 
@@ -19,8 +20,14 @@ def command(
     scenes: options.Scenes,
     output: Annotated[Path, typer.Option("--output", "-o", help="Radiance picture to write.")],
     view: Annotated[
-        str, typer.Option("--view", "-v", help="View file, picture with a view, or options: '-vta -vp 0 2 1.2 …'.")
-    ],
+        str | None,
+        typer.Option(
+            "--view",
+            "-v",
+            help="View file, picture with a view, or options: '-vta -vp 0 2 1.2 …'; for a .rif file a view's name "
+            "(the first one without).",
+        ),
+    ] = None,
     size: Annotated[
         Any, typer.Option(parser=parse_size, metavar="WxH", help="Pixels; fitted to the view so that they are square.")
     ] = "512x512",
@@ -43,7 +50,7 @@ def command(
     [dim]$[/dim] [cyan]sunpeak render room.rad sky.rad shade.rad -v eye.vf -o out.hdr --size 800x800[/cyan]
     """
     check_target(output)
-    looking = View.of(view)
+    looking = chosen_view(view, scenes)
     scene = options.load_scene(scenes, search_path, allow_commands)
     for warning in scene.warnings:
         note(f"sunpeak: warning: {warning}", quiet)
@@ -64,6 +71,17 @@ def command(
     picture.save(output)
     if png:
         write_images(picture, output)
+
+
+def chosen_view(view: str | None, scenes: list[str]) -> View:
+    """Give the view that is asked for, or that of a `.rif` file among the scene's."""
+    inputs = [RadInput.load(name) for name in scenes if is_rad_input(name)]
+    if view is None and not inputs:
+        raise typer.BadParameter("expected a view: -v FILE, or options as '-vta -vp 0 2 1.2 -vd 0 -1 0'")
+    for rad_input in inputs:
+        if view is None or view in rad_input.views:
+            return View.parse(" ".join(rad_input.view(view)))
+    return View.of(str(view))
 
 
 def write_images(picture: Picture, output: Path) -> None:

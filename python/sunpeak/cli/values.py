@@ -55,6 +55,18 @@ def parse_share(text: str) -> float:
     return share
 
 
+def parse_length(text: str) -> float:
+    """`0.4mm`, `0.0004m` or `0.0004` as metres."""
+    match = re.fullmatch(r"([0-9.eE+-]+) *(mm|cm|m)?", text.strip())
+    try:
+        length = float(match[1]) * {"mm": 1e-3, "cm": 1e-2}.get(match[2] or "m", 1.0) if match else math.nan
+    except ValueError:
+        length = math.nan
+    if not 0 <= length < math.inf:
+        raise typer.BadParameter(f"{text!r}; expected a length, as in 0.4mm or 0.0004 (metres)")
+    return length
+
+
 def parse_goal(text: str) -> float | Literal["class"] | tuple[Literal["dgp", "ev"], float]:
     """`1` or `1%` as 0.01; `class`; `dgp:0.005`; `ev:1%` as `("ev", 0.01)`."""
     kind, colon, value = text.strip().partition(":")

@@ -1,7 +1,7 @@
 """`evalglare`: glare of a fisheye picture, printed as evalglare 3 prints it.
 
-The numbers follow `--rules evalglare-3` of `sunpeak glare` (see `docs/glare.md`). `Lveil` and `ugr_exp`, whose
-equations are not published, are `nan`.
+The numbers follow `--rules evalglare-3` of `sunpeak glare` (see `docs/glare.md`). The equations of `Lveil` and
+`ugr_exp` are not published; those here were found from what evalglare 3 prints, and give it to the last digit.
 """
 
 import math
@@ -49,7 +49,8 @@ SOURCES = (
     "No pixels x-pos y-pos L_s Omega_s Posindx L_b L_t E_v Edir Max_Lum Sigma xdir ydir zdir Eglare Lveil_cie teta "
     "glare_zone r_contrast r_dgp"
 )
-NOT_KNOWN = math.nan
+VEIL_DEG = 5.0
+"""`Lveil` is the sum over sources of 5° L ω cos θ / θ, θ to the line of sight [deg]; found from evalglare's output."""
 EV_EXPONENT = 1.87
 """Of Ev under DGP's contrasts (Wienold and Christoffersen 2006)."""
 CHECK_COLOURS = ((1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (1, 0, 1), (0, 1, 1))
@@ -145,19 +146,23 @@ def text(line: CommandLine, picture: Picture, report: GlareReport, dgp: float) -
     """All lines of the result."""
     ratings = [dgp, *(or_zero(value) for value in (report.dgi, report.ugr))]
     ratings += [100.0 if report.vcp is None else report.vcp, or_zero(report.cgi)]
+    veil = veil_of_sources(report)
     if line.is_on("-D"):
-        return f"{EXTENDED}: {numbers([*ratings, 0.0, report.ev_lux, report.max_luminance_cd_m2, NOT_KNOWN])} \n"
+        return f"{EXTENDED}: {numbers([*ratings, 0.0, report.ev_lux, report.max_luminance_cd_m2, veil])} \n"
     if not line.is_on("-d"):
-        return f"{BRIEF}: {numbers([*ratings, NOT_KNOWN])}  \n"
+        return f"{BRIEF}: {numbers([*ratings, veil])}  \n"
     lines = [f"{len(report.sources)} {SOURCES}"]
     lines += [source_line(number, source, picture, report) for number, source in enumerate(report.sources, start=1)]
+    if not report.sources:
+        lines.append(no_source_line(report))
     lines.append(f"{FULL}: {numbers(full_values(picture, report, ratings))}")
     return "\n".join([*lines, ""])
 
 
 def numbers(values: list[float]) -> str:
     """Numbers as evalglare prints them."""
-    return " ".join(f"{value:f}" for value in values)
+    # No negative zero.
+    return " ".join(f"{value + 0.0:f}" for value in values)
 
 
 def or_zero(value: float | None) -> float:
@@ -184,11 +189,29 @@ def full_values(picture: Picture, report: GlareReport, ratings: list[float]) -> 
     means = field_means(picture)
     return [
         dgp, report.mean_luminance_cd_m2, report.ev_lux, report.background_cd_m2, report.ev_sources_lux,
-        dgi, ugr, vcp, cgi, flux / omega if omega else 0.0, omega, NOT_KNOWN, report.veiling_luminance_cd_m2,
-        or_zero(report.dgr), or_zero(report.ugp), NOT_KNOWN, or_zero(report.dgi_modified),
+        dgi, ugr, vcp, cgi, flux / omega if omega else 0.0, omega, veil_of_sources(report),
+        report.veiling_luminance_cd_m2, or_zero(report.dgr), or_zero(report.ugp), ugr_experimental(report),
+        or_zero(report.dgi_modified),
         means.by_index, means.by_square, means.median, means.median_by_index, means.median_by_square,
         or_zero(report.ugp_2017),
     ]  # fmt: skip
+
+
+def veil_of_sources(report: GlareReport) -> float:
+    """`Lveil` [cd/m²]."""
+    veil = 0.0
+    for source in report.sources:
+        angle = source.angle_to_sight_deg
+        flux = source.luminance_cd_m2 * source.solid_angle_sr
+        veil += VEIL_DEG * flux * math.cos(math.radians(angle)) / angle if angle > 0.0 else math.inf
+    return veil
+
+
+def ugr_experimental(report: GlareReport) -> float:
+    """`ugr_exp`: 8 log10 of Ev / (π Lb) times the sum over sources of L ω / P²; found from evalglare's output."""
+    seen = sum(s.luminance_cd_m2 * s.solid_angle_sr / s.position_index**2 for s in report.sources)
+    ratio = report.ev_lux / math.pi / report.background_cd_m2 * seen if report.background_cd_m2 > 0.0 else 0.0
+    return 8.0 * math.log10(ratio) if ratio > 0.0 else 0.0
 
 
 def field_means(picture: Picture) -> FieldMeans:
@@ -229,6 +252,12 @@ def source_line(number: int, source: GlareSource, picture: Picture, report: Glar
     share = contrast(report, [source]) / contrast(report, report.sources)
     shares = [share, share * report.dgp_contrast_term / report.dgp]
     return f"{number} {numbers(first)} {source.solid_angle_sr:.10f} {numbers(middle)} 0 {numbers(shares)} "
+
+
+def no_source_line(report: GlareReport) -> str:
+    """What stands in the place of the first source where there is none."""
+    seen = [report.background_cd_m2, task_luminance(report), report.ev_lux, 0.0, report.max_luminance_cd_m2]
+    return f"0 {numbers([0.0] * 4)} {0.0:.10f} {numbers([0.0, *seen, *[0.0] * 11])}"
 
 
 def contrast(report: GlareReport, sources: list[GlareSource]) -> float:

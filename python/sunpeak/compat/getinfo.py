@@ -11,6 +11,8 @@ from sunpeak._core import InputError
 from sunpeak.compat import header
 
 CHUNK = 1 << 20
+CUBE_MARGIN = 1e-5
+"""What `oconv` leaves around the geometry [m]."""
 
 
 def run(arguments: list[str]) -> int:
@@ -41,7 +43,7 @@ def each(names: list[str], show: Callable[[BinaryIO, str], None]) -> int:
         try:
             if name:
                 with Path(name).open("rb") as file:
-                    sys.stdout.write(f"{name}:{'' if show is show_dimensions else chr(10)}")
+                    sys.stdout.write(f"{name}:{' ' if show is show_dimensions else chr(10)}")
                     show(file, name)
             else:
                 show(sys.stdin.buffer, "standard input")
@@ -60,16 +62,36 @@ def show_header(file: BinaryIO, name: str) -> None:
 
 
 def show_dimensions(file: BinaryIO, name: str) -> None:
-    """Print the resolution of a picture, or the number of rows and columns that a header states."""
+    """Print the resolution of a picture, the rows and columns that a header states, or the cube of an octree."""
     lines = header.read(file, name)
     form = header.value(lines, "FORMAT") or ""
+    if form.endswith("_octree"):
+        show_cube(header_bytes(lines) + file.read(), name)
+        return
     if form.startswith("32-bit_rle_"):
-        sys.stdout.write(f" {file.readline(256).decode('ascii', 'replace').strip()}\n")
+        sys.stdout.write(f"{file.readline(256).decode('ascii', 'replace').strip()}\n")
         return
     counts = [header.value(lines, key) for key in ("NROWS", "NCOLS", "NCOMP")]
     if counts[0] is None or counts[1] is None:
         raise InputError(f"{name}: neither a picture nor a matrix: no dimensions")
-    sys.stdout.write(f" {counts[0]} rows by {counts[1]} columns of {counts[2] or 1} components\n")
+    sys.stdout.write(f"{counts[0]} rows by {counts[1]} columns of {counts[2] or 1} components\n")
+
+
+def header_bytes(lines: list[str]) -> bytes:
+    """Give the lines of a header as they stand in a file."""
+    return "\n".join([*lines, "", ""]).encode()
+
+
+def show_cube(data: bytes, name: str) -> None:
+    """Print the lowest corner and the edge of the cube around an octree's scene."""
+    from sunpeak.compat import octree  # noqa: PLC0415 (nothing else here needs the compiled core)
+
+    bounds = octree.decode(data, name).scene().bounds()
+    if bounds is None:
+        raise InputError(f"{name}: an octree without surfaces: no dimensions")
+    edge = max(high - low for low, high in zip(*bounds, strict=True)) + 2 * CUBE_MARGIN
+    corner = [(low + high - edge) / 2 for low, high in zip(*bounds, strict=True)]
+    sys.stdout.write(f"{' '.join(f'{number:.6g}' for number in [*corner, edge])}\n")
 
 
 def replace(lines: list[str], assignments: Iterable[str]) -> list[str]:
@@ -92,7 +114,7 @@ def edit(change: Callable[[list[str]], list[str]]) -> int:
     others = [line for line, there in zip(lines, is_format, strict=True) if not there]
     # The format stays the last line, where readers look for it.
     new = [*change(others), *formats]
-    header.write_stdout(("\n".join([*new, "", ""])).encode())
+    header.write_stdout(header_bytes(new))
     copy_body()
     return 0
 
@@ -100,7 +122,7 @@ def edit(change: Callable[[list[str]], list[str]]) -> int:
 def through_command(command: list[str]) -> int:
     """Copy the header and let a program work on the body."""
     lines = header.read(sys.stdin.buffer, "standard input")
-    header.write_stdout("\n".join([*lines, header.command_line(command[0], command[1:]), "", ""]).encode())
+    header.write_stdout(header_bytes([*lines, header.command_line(command[0], command[1:])]))
     body = sys.stdin.buffer.read()
     return subprocess.run(command, input=body, check=False).returncode
 

@@ -3,7 +3,7 @@
 import math
 import sys
 from collections.abc import Callable
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -26,9 +26,20 @@ TABLE = Table(
     switches=quality.SWITCHES | {"-h", "-I", "-ld", "-cu"},
     idle=quality.IDLE_VALUES | quality.IDLE_SWITCHES | IDLE | {"-cu"},
 )
-FIELDS = "odvVlLcpnNsmMwW~"
+FIELDS = "odvVrRxXlLcpnNsmMwW~"
 """Letters of `-o`."""
-COMPONENTS = {"o": 3, "d": 3, "v": 3, "V": 3, "l": 1, "L": 1, "c": 2, "p": 3, "n": 3, "N": 3, "w": 1, "W": 3}
+COMPONENTS = {
+    **dict.fromkeys("odvVrxpnNW", 3),
+    **dict.fromkeys("RXlLw", 1),
+    "c": 2,
+}
+TREE_FIELDS = "tT"
+"""Letters that ask for the tree of rays: there is none."""
+NUDGE = 1e-6
+"""How far from a surface rays that leave it start [m]."""
+MIRROR_SHARE = 0.5
+"""The effective distance is that of the mirrored ray where it brings more than this of the light."""
+BRIGHTNESS = np.array([0.265, 0.670, 0.065])
 
 
 class Options:
@@ -80,6 +91,10 @@ def forms_of(option: str) -> str:
 def fields_of(option: str) -> str:
     """Letters after `-o`."""
     for letter in option[2:]:
+        if letter in TREE_FIELDS:
+            raise InputError(
+                f"{option}: '{letter}' asks for the tree of rays behind each; Sunpeak follows random paths and has none"
+            )
         if letter not in FIELDS:
             raise InputError(f"{option}: Sunpeak's rtrace does not give '{letter}'; expected letters of {FIELDS}")
     return option[2:]
@@ -124,6 +139,17 @@ def head(options: Options, arguments: list[str], scene_file: octree.Octree) -> b
     return data + (f"-Y {height:8d} +X {width:8d}\n".encode() if width > 0 and height > 0 else b"")
 
 
+class Deltas(NamedTuple):
+    """What the first surfaces mirror and let through straight, and what is seen by these ways."""
+
+    mirrored: Floats
+    """Radiance that comes by the mirrored ray (n, 3)."""
+    mirrored_distance: Floats
+    """Length of the ray, and of the mirrored one where glass or a mirror is plane (n,)."""
+    straight_distance: Floats
+    """Length of the ray, and of the one that goes straight on (n,)."""
+
+
 class Answers:
     """Everything that can be asked about rays; each is worked out once, when it is asked for."""
 
@@ -135,6 +161,8 @@ class Answers:
         self.lengths = np.linalg.norm(self.directions, axis=1)
         self.is_ray = np.isfinite(rays).all(axis=1) & (self.lengths > 0)
         self._first: First | None = None
+        self._values: Floats | None = None
+        self._deltas: Deltas | None = None
 
     @property
     def first(self) -> First:
@@ -152,6 +180,11 @@ class Answers:
 
     def values(self) -> Floats:
         """Radiance or irradiance (n, 3); 0 for what is no ray, as in Radiance."""
+        if self._values is None:
+            self._values = self._find_values()
+        return self._values
+
+    def _find_values(self) -> Floats:
         good = self.is_ray
         line = self.options.line
         if line.is_on("-ld"):
@@ -163,6 +196,36 @@ class Answers:
         elif line.is_on("-i"):
             ask = self.scene.irradiance_of_surfaces
         return spread(ask(self.origins[good], self.directions[good], self.work), good, 0.0)
+
+    @property
+    def deltas(self) -> Deltas:
+        """What comes by mirrored and straight rays."""
+        if self._deltas is None:
+            self._deltas = self._find_deltas()
+        return self._deltas
+
+    def _find_deltas(self) -> Deltas:
+        good = self.is_ray
+        found = self.scene.world.first_deltas(self.origins[good], self.directions[good])
+        point, share, towards, straight = (spread(part, good, 0.0) for part in found[:4])
+        is_plane = spread(found[4].astype(np.int64), good, 0).astype(bool)
+        mirrors, passes = share.max(axis=1, initial=0.0) > 0, straight.max(axis=1, initial=0.0) > 0
+        mirrored = np.zeros_like(self.origins)
+        leaving = point + NUDGE * towards
+        mirrored[mirrors] = share[mirrors] * self.scene.radiance(leaving[mirrors], towards[mirrors], self.work)
+        met = np.minimum(self.first.distance, FAR)
+        mirrored_distance = np.where(mirrors, met, FAR)
+        adds = mirrors & is_plane
+        mirrored_distance[adds] += self.scene.first(leaving[adds], towards[adds]).distance
+        straight_distance = met.copy()
+        ahead = self.directions[passes] / self.lengths[passes, None]
+        straight_distance[passes] += self.scene.first(point[passes] + NUDGE * ahead, ahead).distance
+        return Deltas(mirrored, np.minimum(mirrored_distance, FAR), np.minimum(straight_distance, FAR))
+
+    def effective_distance(self) -> Floats:
+        """By whichever way more light comes (n,)."""
+        mirrored = self.deltas.mirrored @ BRIGHTNESS > MIRROR_SHARE * (self.values() @ BRIGHTNESS)
+        return np.where(mirrored, self.deltas.mirrored_distance, self.deltas.straight_distance)
 
     def column(self, letter: str) -> Floats:
         """Give the numbers of a letter (n, k)."""
@@ -193,7 +256,11 @@ COLUMNS: dict[str, Callable[[Answers], Floats]] = {
     "d": unit_directions,
     "v": Answers.values,
     "V": Answers.values,
-    "l": lambda answers: np.minimum(answers.first.distance, FAR)[:, None],
+    "r": lambda answers: answers.deltas.mirrored,
+    "R": lambda answers: answers.deltas.mirrored_distance[:, None],
+    "x": lambda answers: answers.values() - answers.deltas.mirrored,
+    "X": lambda answers: answers.deltas.straight_distance[:, None],
+    "l": lambda answers: answers.effective_distance()[:, None],
     "L": lambda answers: np.minimum(answers.first.distance, FAR)[:, None],
     "p": lambda answers: np.where(answers.is_met[:, None], answers.first.point, answers.origins),
     "n": lambda answers: np.where(answers.is_met[:, None], answers.first.normal, 0.0),
@@ -214,8 +281,8 @@ def spread(values: npt.NDArray[Number], where: npt.NDArray[np.bool_], otherwise:
 
 def table(answers: Answers, fields: str, form: str) -> bytes:
     """All columns, row by row."""
-    if form == "c" and fields not in ("v", "V"):
-        raise InputError(f"-fc: expected -ov, found -o{fields}: only colours are written so")
+    if form == "c" and fields not in ("v", "V", "r", "x"):
+        raise InputError(f"-fc: expected -ov, -or or -ox, found -o{fields}: only colours are written so")
     if not set(fields) & set("smM~"):
         return numbers.encode(np.hstack([answers.column(letter) for letter in fields]), form)
     if form != "a":

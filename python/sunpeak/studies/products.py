@@ -114,7 +114,7 @@ def see_through() -> list[Product]:
         Product(
             "perforated sheet, 20 % open",
             "perforated",
-            {"open_area": 0.2, "thickness": 0.5, "from_walls": 0.2},
+            {"open_area": 0.2, "thickness": 0.5, "from_walls": 0.2, "reflectance": 0.5},
             largest_deg=0.9 * float(np.degrees(np.arctan(2.0))),
         ),
         clear_glass(),

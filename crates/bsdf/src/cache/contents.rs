@@ -1,6 +1,6 @@
 //! What a cache file holds: a document's words, its tables, and their splits.
 
-use super::codec::{Decoder, Encoder, damaged};
+use crate::codec::{Decoder, Encoder, damaged};
 use crate::{
     basis::AngleBasis,
     bsdf::Sides,
@@ -28,8 +28,12 @@ impl Contents {
         for word in [&document.name, &document.manufacturer, &document.structure] {
             out.text(word)?;
         }
-        out.count(document.warnings.len())?;
-        document.warnings.iter().try_for_each(|w| out.text(w))?;
+        out.text(&document.comments)?;
+        out.bytes(&document.thickness_m.unwrap_or(f64::NAN).to_le_bytes())?;
+        for words in [&document.warnings, &document.bands] {
+            out.count(words.len())?;
+            words.iter().try_for_each(|w| out.text(w))?;
+        }
         let sides = &self.sides;
         for side in [
             &sides.transmission_front,
@@ -48,10 +52,14 @@ impl Contents {
             name: from.text()?,
             manufacturer: from.text()?,
             structure: from.text()?,
+            comments: from.text()?,
+            thickness_m: Some(f64::from_le_bytes(from.array()?)).filter(|t| t.is_finite()),
             ..Document::default()
         };
-        for _ in 0..from.count(8)? {
-            document.warnings.push(from.text()?);
+        for words in [&mut document.warnings, &mut document.bands] {
+            for _ in 0..from.count(8)? {
+                words.push(from.text()?);
+            }
         }
         let mut side = || match from.count(1)? {
             0 => Ok(None),

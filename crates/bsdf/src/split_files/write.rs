@@ -36,6 +36,7 @@ impl Bsdf {
             .iter()
             .zip(&tables)
             .map(|((direction, _), (table, color))| Component {
+                band: "Visible",
                 direction,
                 luminous: table,
                 color: color.as_ref(),

@@ -1,6 +1,6 @@
 //! The bases that products are tabulated in, by name.
 
-use crate::{basis::AngleBasis, table::Columns};
+use crate::{basis::AngleBasis, layout::Layout, table::Columns};
 use std::sync::Arc;
 use sunpeak_core::{Error, Result};
 
@@ -58,6 +58,18 @@ impl std::str::FromStr for Basis {
     }
 }
 
+impl std::fmt::Display for Basis {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Self::KlemsFull => f.write_str("klems"),
+            Self::KlemsHalf => f.write_str("klems-half"),
+            Self::KlemsQuarter => f.write_str("klems-quarter"),
+            Self::TensorTree3 { side } => write!(f, "t3-{}", side * side),
+            Self::TensorTree4 { side } => write!(f, "t4-{}", side * side),
+        }
+    }
+}
+
 impl Basis {
     /// `IncidentDataStructure` of a file in this basis.
     pub fn structure(self) -> &'static str {
@@ -74,7 +86,7 @@ impl Basis {
     }
 
     /// The patches of a matrix basis.
-    pub(super) fn patches(self) -> Option<Arc<AngleBasis>> {
+    pub fn patches(self) -> Option<Arc<AngleBasis>> {
         let name = match self {
             Self::KlemsFull => "LBNL/Klems Full",
             Self::KlemsHalf => "LBNL/Klems Half",
@@ -85,12 +97,18 @@ impl Basis {
     }
 
     /// The incident division and the exiting one.
-    pub(super) fn divisions(self) -> [Columns; 2] {
+    pub fn divisions(self) -> [Columns; 2] {
         match (self, self.patches()) {
             (_, Some(basis)) => [Columns::Patches(basis.clone()), Columns::Patches(basis)],
             (Self::TensorTree3 { side }, _) => [Columns::Radial { side }, Columns::Square { side }],
             (Self::TensorTree4 { side }, _) => [Columns::Square { side }, Columns::Square { side }],
             _ => unreachable!("every other basis is a known matrix basis"),
         }
+    }
+
+    /// Both of them.
+    pub fn layout(self) -> Layout {
+        let [incident, exiting] = self.divisions();
+        Layout { incident, exiting }
     }
 }

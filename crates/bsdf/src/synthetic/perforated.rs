@@ -3,6 +3,7 @@
 use super::product::Product;
 use glam::DVec2;
 use std::f64::consts::PI;
+use sunpeak_core::{Error, Result};
 
 /// Round holes through a sheet of some thickness: what goes straight is what the upper and the lower rim have in common, the overlap
 /// of two circles displaced by thickness · tan(theta). What meets the walls of the holes is scattered.
@@ -14,6 +15,30 @@ pub struct Perforated {
     pub thickness: f64,
     /// Share of the light on the walls that comes out at the other side [-].
     pub from_walls: f64,
+    /// Diffuse reflectance of the sheet itself [-], both sides.
+    pub reflectance: f64,
+}
+
+impl Perforated {
+    /// Can a sheet be like that?
+    pub fn check(&self) -> Result<()> {
+        for (name, share) in [
+            ("open area", self.open_area),
+            ("share from the walls", self.from_walls),
+            ("reflectance", self.reflectance),
+        ] {
+            if !(0.0..=1.0).contains(&share) {
+                return Err(Error::value(format!("perforated sheet: {name} is {share}; expected 0 to 1")));
+            }
+        }
+        if !(self.thickness >= 0.0 && self.thickness.is_finite()) {
+            return Err(Error::value(format!(
+                "perforated sheet: thickness is {} diameters; expected 0 or more",
+                self.thickness
+            )));
+        }
+        Ok(())
+    }
 }
 
 impl Product for Perforated {
@@ -35,6 +60,6 @@ impl Product for Perforated {
     }
 
     fn reflectance(&self) -> [f64; 2] {
-        [0.5 * (1.0 - self.open_area); 2]
+        [self.reflectance * (1.0 - self.open_area); 2]
     }
 }

@@ -7,7 +7,9 @@ use super::{
 use crate::{
     bsdf::{Bsdf, Sides},
     distribution::Distribution,
+    exact_peak::{Delta, with_exact_peak},
     kernel::{Kernel, Spread},
+    layout::Layout,
     table::{Columns, Matrix, Table},
     tree::Tree,
     xml::Document,
@@ -34,22 +36,48 @@ const BESIDE: f64 = 1e-9;
 /// Tabulate a product: transmission by cell averages (the delta's share of each cell is exact), as the goniophotometer sees them,
 /// and diffuse reflection.
 pub fn tabulate(product: &dyn Product, basis: Basis, seen_by: &Goniophotometer) -> Result<Bsdf> {
+    let side = |product: &dyn Product, seed: u64| {
+        let (table, color) = transmission(product, basis, &Goniophotometer { seed, ..*seen_by });
+        Distribution::with_split(table, color)
+    };
+    with_sides(product, basis, seen_by.is_exact(), |product, front| {
+        side(product, if front { seen_by.seed } else { seen_by.seed ^ 0x5bd1_e995 })
+    })
+}
+
+/// Tabulate a gray product and keep its through part as it is known, rather than what a split would find in the table.
+pub fn tabulate_exact(product: &dyn Product, basis: Basis) -> Result<Bsdf> {
+    with_sides(product, basis, true, |product, _| {
+        let [incident, exiting] = basis.divisions();
+        let averages = Averages { product, incident, exiting, blur: None, isotropic: basis.is_isotropic() };
+        let columns: Vec<(Vec<f64>, Delta)> = (0..averages.incident.len())
+            .into_par_iter()
+            .map(|column| (averages.scattered(column), averages.delta(column)))
+            .collect();
+        let (scattered, deltas): (Vec<_>, Vec<_>) = columns.into_iter().unzip();
+        with_exact_peak(basis, |column, cell| scattered[column][cell] as f32, &deltas)
+    })
+}
+
+/// Both sides of a product from what makes one.
+fn with_sides(
+    product: &dyn Product,
+    basis: Basis,
+    exact: bool,
+    side: impl Fn(&dyn Product, bool) -> Distribution,
+) -> Result<Bsdf> {
     if basis.is_isotropic() && !product.is_isotropic() {
         return Err(Error::value(format!(
             "{}: not the same at all azimuths; expected a matrix or a t4 basis",
             product.name()
         )));
     }
-    let side = |product: &dyn Product, seed: u64| {
-        let (table, color) = transmission(product, basis, &Goniophotometer { seed, ..*seen_by });
-        Arc::new(Distribution::with_split(table, color))
-    };
-    let front = side(product, seen_by.seed);
+    let front = Arc::new(side(product, true));
     // Isotropic products are the same from behind; counted anew, they differ by their noise.
-    let back = if product.is_isotropic() && seen_by.is_exact() {
+    let back = if product.is_isotropic() && exact {
         front.clone()
     } else {
-        side(&OtherSide(product), seen_by.seed ^ 0x5bd1_e995)
+        Arc::new(side(&OtherSide(product), false))
     };
     let [reflection_front, reflection_back] = product
         .reflectance()
@@ -84,37 +112,18 @@ fn diffuse(reflectance: f64, basis: Basis) -> Table {
 type Planes = (Table, Option<[Vec<f32>; 2]>);
 
 fn transmission(product: &dyn Product, basis: Basis, seen_by: &Goniophotometer) -> Planes {
-    let [incident, exiting] = basis.divisions();
-    let averages = Averages { product, incident, exiting, blur: seen_by.blur(), rows: basis.is_isotropic() };
+    let layout = basis.layout();
+    let Layout { incident, exiting } = layout.clone();
+    let averages =
+        Averages { product, incident, exiting, blur: seen_by.blur(), isotropic: basis.is_isotropic() };
     let columns: Vec<[Vec<f32>; 3]> =
         (0..averages.incident.len()).into_par_iter().map(|i| averages.column(i, seen_by)).collect();
     let plane = |k: usize| {
         let value = |column: usize, cell: usize| columns[column][k].get(cell).copied().unwrap_or(0.0);
-        into_basis(basis, value)
+        layout.table(value)
     };
     let color = product.tint().map(|_| [plane(1).into_values(), plane(2).into_values()]);
     (plane(0), color)
-}
-
-/// A table of the basis from the values by column and exiting cell.
-fn into_basis(basis: Basis, value: impl Fn(usize, usize) -> f32) -> Table {
-    match (basis, basis.patches()) {
-        (_, Some(patches)) => {
-            let n = patches.len();
-            let values = (0..n * n).map(|k| value(k / n, k % n)).collect();
-            Table::Matrix(Matrix { incident: patches.clone(), exiting: patches, values })
-        }
-        (Basis::TensorTree3 { side }, _) => {
-            // The second half of an isotropic tree is not used.
-            let value = |c: [usize; 4]| if c[0] < side / 2 { value(c[0], c[1] * side + c[2]) } else { 0.0 };
-            Table::Tree(Tree::regular(3, side.trailing_zeros() as u8, value))
-        }
-        (Basis::TensorTree4 { side }, _) => {
-            let value = |c: [usize; 4]| value(c[0] * side + c[1], c[2] * side + c[3]);
-            Table::Tree(Tree::regular(4, side.trailing_zeros() as u8, value))
-        }
-        _ => unreachable!("every other basis is a known matrix basis"),
-    }
 }
 
 /// Cell averages of one side of a product.
@@ -124,22 +133,20 @@ struct Averages<'a> {
     exiting: Columns,
     /// What the instrument makes of a delta.
     blur: Option<Spread>,
-    /// The straight direction runs along the border of two rows: each gets half.
-    rows: bool,
+    isotropic: bool,
 }
 
 impl Averages<'_> {
     /// Y, X, Z [1/sr] of one incident cell's exiting cells; X and Z are empty for gray products.
     fn column(&self, column: usize, seen_by: &Goniophotometer) -> [Vec<f32>; 3] {
-        let mut scattered = self.smooth(column);
-        self.add_lobes(column, &mut scattered, |p| self.product.lobe(p));
+        let scattered = self.scattered(column);
         let mut straight = vec![0.0; scattered.len()];
         match self.blur {
             Some(spread) => {
                 let lobe = |p: DVec2| Some(Lobe { flux: self.product.through(p), spread });
                 self.add_lobes(column, &mut straight, lobe);
             }
-            None => self.add_delta(column, &mut straight),
+            None => self.delta(column).cells.iter().for_each(|&(cell, density)| straight[cell] = density),
         }
         let exact: Vec<f64> = scattered.iter().zip(&straight).map(|(s, t)| s + t).collect();
         let area = |cell: usize| self.exiting.projected_solid_angle(cell);
@@ -158,34 +165,23 @@ impl Averages<'_> {
         }
     }
 
-    /// Incident points of a column, `n` a side.
-    fn points(&self, column: usize, n: usize) -> Vec<DVec2> {
-        match self.incident {
-            Columns::Radial { .. } => {
-                midpoints(n * n).map(|u| self.incident.point(column, [u, 0.5])).collect()
-            }
-            _ => square(n).map(|u| self.incident.point(column, u)).collect(),
-        }
+    fn scattered(&self, column: usize) -> Vec<f64> {
+        let mut values = self.smooth(column);
+        self.add_lobes(column, &mut values, |p| self.product.lobe(p));
+        values
     }
 
     fn smooth(&self, column: usize) -> Vec<f64> {
         let n = if matches!(self.exiting, Columns::Patches(_)) { PATCH_POINTS } else { TREE_POINTS };
-        let incident = self.points(column, n);
+        let incident = self.incident.points(column, n);
         let mean_at = |q: DVec2| mean(incident.iter().map(|&p| self.product.smooth(p, q)));
         (0..self.exiting.len()).map(|o| mean(square(n).map(|u| mean_at(self.exiting.point(o, u))))).collect()
     }
 
-    fn add_delta(&self, column: usize, values: &mut [f64]) {
-        let points = self.points(column, THROUGH_POINTS);
-        let share = 1.0 / points.len() as f64;
-        let sides: &[f64] = if self.rows { &[-BESIDE, BESIDE] } else { &[0.0] };
-        for p in points {
-            for &y in sides {
-                let cell = self.exiting.index(p + DVec2::new(0.0, y));
-                let flux = share * self.product.through(p) / sides.len() as f64;
-                values[cell] += flux / self.exiting.projected_solid_angle(cell);
-            }
-        }
+    fn delta(&self, column: usize) -> Delta {
+        let points = self.incident.points(column, THROUGH_POINTS).into_iter();
+        let values: Vec<(DVec2, f64)> = points.map(|p| (p, self.product.through(p))).collect();
+        Delta::over(&values, &self.exiting, self.isotropic)
     }
 
     fn add_lobes(&self, column: usize, values: &mut [f64], lobe: impl Fn(DVec2) -> Option<Lobe>) {
@@ -199,7 +195,7 @@ impl Averages<'_> {
             _ => width(&self.incident, column),
         };
         let n = (own / spread.sigma()).clamp(LOBE_POINTS[0], LOBE_POINTS[1]).ceil() as usize;
-        let points = self.points(column, n);
+        let points = self.incident.points(column, n);
         let share = 1.0 / points.len() as f64;
         for p in points {
             let Some(lobe) = lobe(p).filter(|l| l.flux > 0.0) else { continue };

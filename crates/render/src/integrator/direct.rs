@@ -105,7 +105,8 @@ impl Integrator<'_> {
             (true, false) => 0.0,
         };
         let scattered = value.diffuse * diffuse_weight + value.glossy * weight;
-        scattered * sample.radiance * transmitted.share * (receiver.cosine(sample.direction) / sample.pdf) - known
+        scattered * sample.radiance * transmitted.share * (receiver.cosine(sample.direction) / sample.pdf)
+            - known
     }
 
     /// What the sample would bring in the far field, which the shade's radiance holds already.

@@ -3,10 +3,12 @@
 //! Reference manual, "Glass"; van Leeuwen's and Ward's formula for a pane with all internal reflections summed:
 //! with r the Fresnel reflectance of one face (for each polarisation) and d the transmissivity along the refracted path,
 //! transmittance (1-r)² d / (1 - r² d²), reflectance r (1 + (1-2r) d²) / (1 - r² d²).
-//! The pane is infinitely thin: transmitted rays go straight on.
+//! The pane is infinitely thin: transmitted rays go straight on, but for rays from the eye where a texture bends the normal. Radiance
+//! turns these by 2 (1 - n) times what the texture adds to the normal, the deflection by two faces that are inclined as much; shadow rays
+//! and scattered ones go straight there, so that nothing is found twice.
 
 use super::{Arrival, Scattering, Smooth};
-use sunpeak_core::Rgb;
+use sunpeak_core::{Rgb, Vec3};
 
 /// At grazing incidence the cosine is taken to be this: a ray in the pane's plane has no Fresnel reflectance.
 const GRAZING_COSINE: f64 = 1e-9;
@@ -53,15 +55,27 @@ impl Glass {
         0.5 * reflectance.iter().map(|&r| r * (1.0 + (1.0 - 2.0 * r) * d2) / (1.0 - r * r * d2)).sum::<Rgb>()
     }
 
-    pub fn scatter(&self, arrival: &Arrival) -> Scattering<'static> {
+    /// `view`: the ray comes from the camera by straight passes and mirrors alone.
+    pub fn scatter(&self, arrival: &Arrival, view: bool) -> Scattering<'static> {
         let cosine = arrival.cosine();
+        // Patterns multiply what comes through, and nothing else, as in Radiance.
+        let through = self.transmittance(cosine) * arrival.tint;
+        let bent = if view { self.bent(arrival) } else { None };
         Scattering {
-            // Patterns multiply what comes through, and nothing else, as in Radiance.
-            straight: self.transmittance(cosine) * arrival.tint,
+            straight: if bent.is_some() { Rgb::ZERO } else { through },
             mirrored: self.reflectance(cosine),
-            refracted: [None; 2],
+            refracted: [bent.map(|direction| (direction, through)), None],
             smooth: Smooth::None,
         }
+    }
+
+    /// Where a ray goes on behind a bent normal.
+    fn bent(&self, arrival: &Arrival) -> Option<Vec3> {
+        if arrival.bend == Vec3::ZERO {
+            return None;
+        }
+        let bend = if arrival.at_front() { arrival.bend } else { -arrival.bend };
+        (arrival.direction + bend * (2.0 * (1.0 - self.index))).try_normalize()
     }
 }
 

@@ -80,6 +80,8 @@ pub(crate) struct Arrival {
     pub normal: Vec3,
     /// Unit normal of the front as the surface lies.
     pub flat_normal: Vec3,
+    /// What interpolation and textures add to it before it is a unit vector again.
+    pub bend: Vec3,
     /// Unit direction of the ray.
     pub direction: Vec3,
     /// Local coordinates on a mesh.
@@ -98,6 +100,7 @@ impl Arrival {
             point,
             normal,
             flat_normal: normal,
+            bend: Vec3::ZERO,
             direction,
             local: [0.0; 2],
             tint: Rgb::ONE,
@@ -108,15 +111,16 @@ impl Arrival {
 
     /// The same with a smoothed normal. One that looks away from the ray is mirrored to its side (as Radiance does).
     pub fn smoothed(self, normal: Vec3) -> Self {
+        let bend = normal - self.flat_normal;
         let cosine = normal.dot(self.direction);
         let is_away = (cosine < 0.0) != self.at_front();
         let normal = if is_away { normal - self.direction * (2.0 * cosine) } else { normal };
-        Self { normal: normal.try_normalize().unwrap_or(self.flat_normal), ..self }
+        Self { normal: normal.try_normalize().unwrap_or(self.flat_normal), bend, ..self }
     }
 
     /// The same at a surface that is turned around.
     pub fn turned(&self) -> Self {
-        Self { normal: -self.normal, flat_normal: -self.flat_normal, ..*self }
+        Self { normal: -self.normal, flat_normal: -self.flat_normal, bend: -self.bend, ..*self }
     }
 
     /// Did the ray come from the front?
@@ -140,7 +144,7 @@ impl Arrival {
             || (direction.dot(self.normal) > 0.0) == (direction.dot(self.flat_normal) > 0.0)
     }
 
-    /// The vector by which an anisotropic material is turned here; zero where its mathematics fails.
+    /// The vector by which a material is turned here; zero where its mathematics fails.
     pub fn orientation(&self, orientation: &Orientation) -> Vec3 {
         match orientation {
             Orientation::Fixed(vector) => *vector,
@@ -197,7 +201,7 @@ impl Material {
         match self {
             Self::Ward(m) => m.scatter(arrival),
             Self::Ashikhmin(m) => m.scatter(arrival),
-            Self::Glass(m) => m.scatter(arrival),
+            Self::Glass(m) => m.scatter(arrival, view),
             Self::Dielectric(m) => m.scatter(arrival),
             Self::Mirror(m) if arrival.at_front() => {
                 Scattering { mirrored: m.reflectance * arrival.tint, ..Scattering::BLACK }

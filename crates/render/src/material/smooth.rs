@@ -160,6 +160,12 @@ impl Smooth<'_> {
         }
     }
 
+    /// Draw a direction; `None` as for [`Self::sample`].
+    pub fn draw(&self, sampler: &mut Sampler) -> Option<SmoothSample> {
+        let (u, choice) = (sampler.next_2d(), sampler.next_1d());
+        self.sample(choice, u, sampler)
+    }
+
     /// Draw a direction by a number that chooses the lobe and a point of the square; `None` if the draw fell where nothing is
     /// scattered.
     pub fn sample(&self, choice: f64, u: [f64; 2], sampler: &mut Sampler) -> Option<SmoothSample> {

@@ -16,6 +16,7 @@ use crate::backlight::Backlight;
 use std::{f64::consts::FRAC_1_PI, sync::Arc};
 use sunpeak_bsdf::{Backlit, Bsdf, Mode, PeakRule};
 use sunpeak_core::{Frame, Rgb, Vec3, luminance, warp};
+use sunpeak_scene::Orientation;
 
 /// The material.
 #[derive(Clone, Debug)]
@@ -26,8 +27,7 @@ pub(crate) struct Table {
     /// What it stands for reaches this far behind its front, or, negative, before it [m].
     pub thickness: f64,
     pub rule: PeakRule,
-    /// Up vector, world axes.
-    pub up: Vec3,
+    pub up: Orientation,
     /// Is the frame left-handed?
     pub mirrored: bool,
     pub front_diffuse: Rgb,
@@ -38,9 +38,21 @@ pub(crate) struct Table {
 impl Table {
     /// z the front normal, y up, x = y cross z, or its opposite in a mirrored instance. Where a curved surface's normal runs
     /// along the up vector, any frame serves.
-    pub fn frame(&self, normal: Vec3) -> Frame {
-        let frame = Frame::from_normal_up(normal, self.up).unwrap_or_else(|| Frame::from_normal(normal));
+    fn frame(&self, arrival: &Arrival) -> Frame {
+        self.frame_by(arrival.normal, arrival.orientation(&self.up))
+    }
+
+    fn frame_by(&self, normal: Vec3, up: Vec3) -> Frame {
+        let frame = Frame::from_normal_up(normal, up).unwrap_or_else(|| Frame::from_normal(normal));
         if self.mirrored { Frame { x: -frame.x, ..frame } } else { frame }
+    }
+
+    /// The frame all over a flat surface; `None` if it varies.
+    pub fn level_frame(&self, normal: Vec3) -> Option<Frame> {
+        match &self.up {
+            Orientation::Fixed(up) => Some(self.frame_by(normal, *up)),
+            Orientation::Varying(_) => None,
+        }
     }
 
     /// Does it stand for geometry that is there too?
@@ -68,17 +80,17 @@ impl Table {
         if self.rule == PeakRule::Off || (self.is_reference_rule() && !direct) {
             return Rgb::ZERO;
         }
-        self.bsdf.through(self.frame(arrival.normal).to_local(-arrival.direction), self.rule) * arrival.tint
+        self.bsdf.through(self.frame(arrival).to_local(-arrival.direction), self.rule) * arrival.tint
     }
 
     /// What the surface gives off, as rays meet it at its front or not, in the light of a far field behind it (world axes).
     pub fn backlit(&self, normal: Vec3, at_front: bool, field: impl Fn(Vec3) -> Rgb) -> Option<Backlit> {
-        let frame = self.frame(normal);
+        let frame = self.level_frame(normal)?;
         self.bsdf.backlit(at_front, self.rule, |w_out| field(frame.to_world(w_out)))
     }
 
     pub fn scatter(&self, arrival: &Arrival, view: bool) -> Scattering<'_> {
-        let frame = self.frame(arrival.normal);
+        let frame = self.frame(arrival);
         let w_in = frame.to_local(-arrival.direction);
         let goes_straight = self.rule == PeakRule::Split || (self.is_reference_rule() && view);
         let straight =

@@ -15,6 +15,7 @@ mod wgmd;
 
 use super::{Arrival, Scattering, Smooth, SmoothValue, fault_of_orientation, smooth::SmoothSample};
 use std::f64::consts::{FRAC_1_PI, PI};
+use sunpeak_bsdf::model::bounded_ward;
 use sunpeak_core::{Error, Frame, Rgb, Vec3, luminance, warp};
 use sunpeak_scene::Orientation;
 use transmission::Transmission;
@@ -267,9 +268,7 @@ impl WardLobes {
         if !self.is_rough() {
             return 0.0;
         }
-        let half = self.w_in + w_out;
-        let z2 = half.z * half.z;
-        (-self.slope(half)).exp() * half.length_squared() / (PI * z2 * z2 * self.alpha[0] * self.alpha[1])
+        bounded_ward(self.w_in, w_out, self.alpha)
     }
 
     /// Gaussian lobe of unit transmittance around the straight direction [1/sr]; the value times the cosine is

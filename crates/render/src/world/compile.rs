@@ -15,7 +15,8 @@ use std::{collections::HashMap, path::Path, sync::Arc};
 use sunpeak_bsdf::{Bsdf, PeakRule};
 use sunpeak_core::{Error, Frame, Location, Result, Vec3};
 use sunpeak_scene::{
-    BsdfMaterial, ComponentModifier, Material as Said, Mesh, ModifierId, ModifierKind, Scene, Shape, Surface,
+    BsdfMaterial, ComponentModifier, Material as Said, Mesh, ModifierId, ModifierKind, Orientation, Scene,
+    Shape, Surface,
 };
 
 /// Modifiers may name each other this deep; more is a circle.
@@ -255,13 +256,11 @@ impl<'s> Compiler<'s> {
         let object = self.objects.len() as u32;
         for id in self.seen_materials(material) {
             match (&self.materials[id.0 as usize], facing) {
-                (Material::Table(table), Facing::Flat(normal))
-                    if Frame::from_normal_up(normal, table.up).is_none() =>
+                (Material::Table(Table { up: Orientation::Fixed(up), .. }), Facing::Flat(normal))
+                    if Frame::from_normal_up(normal, *up).is_none() =>
                 {
-                    let message = format!(
-                        "the BSDF's up vector {} runs along the surface's normal; give one across",
-                        table.up
-                    );
+                    let message =
+                        format!("the BSDF's up vector {up} runs along the surface's normal; give one across");
                     return Err(Error::input(surface.location.clone(), message));
                 }
                 (Material::Mirror(_), Facing::Flat(_)) => self.mirrors.push(object),
@@ -520,7 +519,7 @@ impl<'s> Compiler<'s> {
             is_aperture: said.extract_peak,
             thickness,
             rule,
-            up: said.up,
+            up: said.up.clone(),
             mirrored: said.mirrored,
             front_diffuse: said.front_diffuse,
             back_diffuse: said.back_diffuse,

@@ -5,6 +5,7 @@
 
 use super::MAX_DIMENSIONS;
 use crate::Picture;
+use crate::picture::SpectralPicture;
 use crate::raw::{parse_integer, parse_real};
 use sunpeak_core::{Error, Location, Result};
 
@@ -101,25 +102,33 @@ impl DataArray {
     }
 
     /// The three channels of a picture, over y and x from its lower left corner, the shorter side 1 (reference manual,
-    /// "colorpict").
-    pub(crate) fn of_picture(picture: &Picture) -> Option<[Self; 3]> {
+    /// "colorpict"); its pixels are `aspect` times as high as wide.
+    pub(crate) fn of_picture(picture: &Picture, aspect: f64) -> Option<[Self; 3]> {
         let (width, height) = (picture.width, picture.height);
         if width < 2 || height < 2 {
             return None;
         }
-        let (across, up) = match width <= height {
-            true => (1.0, height as f64 / width as f64),
-            false => (width as f64 / height as f64, 1.0),
-        };
-        let axes = vec![
-            Axis::Even { begin: 0.0, end: up, count: height },
-            Axis::Even { begin: 0.0, end: across, count: width },
-        ];
+        let axes = picture_axes(width, height, aspect).to_vec();
         Some([0, 1, 2].map(|channel| {
             let rows = picture.pixels.chunks_exact(width).rev();
             let values = rows.flatten().map(|pixel| f64::from(pixel[channel])).collect();
             Self { axes: axes.clone(), values }
         }))
+    }
+
+    /// A picture of spectra, over y and x from its lower left corner as [`Self::of_picture`], and wavelength.
+    pub(crate) fn of_spectral_picture(picture: &SpectralPicture) -> Option<Self> {
+        let (width, height) = (picture.width, picture.height);
+        if width < 2 || height < 2 {
+            return None;
+        }
+        let [y, x] = picture_axes(width, height, picture.aspect);
+        let [first, last] = picture.range_nm;
+        // Values belong to the middles of the components.
+        let half = 0.5 * (last - first) / picture.components as f64;
+        let nm = Axis::Even { begin: first + half, end: last - half, count: picture.components };
+        let rows = picture.values.chunks_exact(width * picture.components).rev();
+        Some(Self { axes: vec![y, x, nm], values: rows.flatten().copied().map(f64::from).collect() })
     }
 
     /// Number of dimensions.
@@ -153,6 +162,13 @@ impl DataArray {
         };
         at(cell, low) + at(cell + 1, high)
     }
+}
+
+/// The axes y and x of a picture whose pixels are `aspect` times as high as wide; the shorter side is 1.
+fn picture_axes(width: usize, height: usize, aspect: f64) -> [Axis; 2] {
+    let shape = aspect * height as f64 / width as f64;
+    let (up, across) = if shape >= 1.0 { (shape, 1.0) } else { (1.0, 1.0 / shape) };
+    [Axis::Even { begin: 0.0, end: up, count: height }, Axis::Even { begin: 0.0, end: across, count: width }]
 }
 
 /// Words of a data file.

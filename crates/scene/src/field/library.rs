@@ -3,7 +3,7 @@
 use super::ray::ray_definitions;
 use super::{DataArray, Field, FieldFrame};
 use crate::files::{LoadOptions, read};
-use crate::{Picture, raw::Primitive, text::Font};
+use crate::{Picture, picture::SpectralPicture, raw::Primitive, text::Font};
 use std::{collections::HashMap, path::Path, path::PathBuf, sync::Arc, sync::OnceLock};
 use sunpeak_cal::Definitions;
 use sunpeak_core::{Error, Transform};
@@ -141,12 +141,26 @@ impl FunctionFiles {
         if let Some(known) = self.pictures.get(&path) {
             return Ok(known.clone());
         }
-        let picture = Picture::load(&path).map_err(|error| error.to_string())?;
-        let channels = DataArray::of_picture(&picture)
+        let (picture, aspect) = Picture::load_stored(&path).map_err(|error| error.to_string())?;
+        let channels = DataArray::of_picture(&picture, aspect)
             .ok_or_else(|| format!("{}: a picture of 2 by 2 pixels or more is expected", path.display()))?;
         let channels = channels.map(Arc::new);
         self.pictures.insert(path, channels.clone());
         Ok(channels)
+    }
+
+    /// A picture of spectra.
+    pub fn spectral_picture(&mut self, places: Places, name: &str) -> Result<Arc<DataArray>, String> {
+        let path = places.find(name).map_err(|message| format!("hyperspectral picture: {message}"))?;
+        if let Some(known) = self.data.get(&path) {
+            return Ok(known.clone());
+        }
+        let picture = SpectralPicture::load(&path).map_err(|error| error.to_string())?;
+        let array = DataArray::of_spectral_picture(&picture)
+            .ok_or_else(|| format!("{}: a picture of 2 by 2 pixels or more is expected", path.display()))?;
+        let array = Arc::new(array);
+        self.data.insert(path, array.clone());
+        Ok(array)
     }
 }
 

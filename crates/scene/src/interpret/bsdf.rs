@@ -2,7 +2,7 @@
 
 use super::Interpreter;
 use super::args::{check_counts, title, triple};
-use crate::{BsdfMaterial, raw::Primitive};
+use crate::{BsdfMaterial, Orientation, raw::Primitive};
 use sunpeak_core::Rgb;
 
 /// The material; its XML file is found, not read.
@@ -26,8 +26,13 @@ pub fn material(interpreter: &mut Interpreter, primitive: &Primitive) -> Result<
         "front, back and transmitted diffuse colour",
     )?;
     let transform = interpreter.transform(primitive, needed)?;
-    let up = interpreter.fixed_vector(primitive, file_at + 1, "up vector")?.try_normalize();
-    let up = up.ok_or_else(|| format!("{}: the up vector is zero", title(primitive)))?;
+    let up = match interpreter.orientation(primitive, file_at + 1, "up vector")? {
+        Orientation::Fixed(up) => {
+            let up = up.try_normalize();
+            Orientation::Fixed(up.ok_or_else(|| format!("{}: the up vector is zero", title(primitive)))?)
+        }
+        varying @ Orientation::Varying(_) => varying,
+    };
     let thickness = if extract_peak {
         0.0
     } else {

@@ -1,4 +1,4 @@
-//! Expressions of materials that are no functions: the vector by which an anisotropic one is turned, a proxy's thickness.
+//! Expressions of materials that are no functions: the vector by which one is turned, a proxy's thickness.
 
 use super::{Interpreter, args::title};
 use crate::{
@@ -35,21 +35,6 @@ impl Interpreter<'_> {
             [Some(x), Some(y), Some(z)] => Orientation::Fixed(transform.vector(Vec3::new(x, y, z))),
             _ => Orientation::Varying(field),
         })
-    }
-
-    /// A vector that has to be the same everywhere.
-    pub(super) fn fixed_vector(
-        &mut self,
-        primitive: &Primitive,
-        at: usize,
-        what: &str,
-    ) -> Result<Vec3, String> {
-        match self.orientation(primitive, at, what)? {
-            Orientation::Fixed(vector) => Ok(vector),
-            Orientation::Varying(_) => {
-                Err(format!("{}: the {what} varies over the surface: expected a constant", title(primitive)))
-            }
-        }
     }
 
     /// A number, or a constant expression of the function file at string argument `file`.

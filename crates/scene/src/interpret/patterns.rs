@@ -30,6 +30,7 @@ impl Interpreter<'_> {
             "specfile" => pattern(Pattern::Uniform(self.spectrum_file(primitive)?)),
             "specfunc" => pattern(self.spectral_function(primitive)?),
             "specdata" => pattern(self.spectral_data(primitive)?),
+            "specpict" => pattern(self.spectral_picture(primitive)?),
             "texfunc" => ModifierKind::Texture(self.function(primitive, &[0, 1, 2], 3)?),
             "texdata" => ModifierKind::Texture(self.data(primitive, 0, 3, 3)?),
             "mixfunc" => {
@@ -182,11 +183,30 @@ impl Interpreter<'_> {
         }
         at_least(primitive, 2 + dimensions, "a coordinate for each dimension of the data but the last")?;
         let coordinates: Vec<usize> = (3..2 + dimensions).collect();
+        self.spectra_of(primitive, &coordinates, data)
+    }
+
+    /// `specpict`: function, picture, function file, x, y.
+    fn spectral_picture(&mut self, primitive: &Primitive) -> Result<Pattern, String> {
+        at_least(primitive, 5, "a function, a hyperspectral picture, a function file and two coordinates")?;
+        let places = Places { options: self.options, cwd: &self.cwd, primitive };
+        let data = self.functions.spectral_picture(places, &primitive.strings[1]);
+        let data = data.map_err(|message| format!("{}: {message}", title(primitive)))?;
+        self.spectra_of(primitive, &[4, 3], data)
+    }
+
+    /// Spectra in data whose last dimension is the wavelength; the coordinates of the others stand at these string arguments.
+    fn spectra_of(
+        &mut self,
+        primitive: &Primitive,
+        coordinates: &[usize],
+        data: Arc<DataArray>,
+    ) -> Result<Pattern, String> {
         let wavelengths = data.last_coordinates();
         let (first, last) = (wavelengths[0], wavelengths[wavelengths.len() - 1]);
         check_wavelengths(primitive, first, last)?;
         let spectrum = Spectrum::of_samples(first, last, wavelengths.len());
-        let field = self.field(primitive, 2, &coordinates, &[(0, 2)], vec![data])?;
+        let field = self.field(primitive, 2, coordinates, &[(0, 2)], vec![data])?;
         Ok(Pattern::Spectral { field, spectrum })
     }
 

@@ -8,6 +8,14 @@ use sunpeak_core::{Rgb, Vec3};
 /// The line of an exact source: direction, solid angle [sr], radiance, visible fraction.
 const SOURCE_KEY: &str = "SUNPEAK_SOURCE=";
 
+/// Height over width of a pixel; several lines multiply.
+pub(super) const ASPECT_KEY: &str = "PIXASPECT=";
+
+/// What stands behind it.
+pub(super) fn aspect(value: &str) -> Option<f64> {
+    positive(value).map(|[aspect]| aspect)
+}
+
 /// What is in a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
@@ -25,6 +33,8 @@ pub struct Header {
     pub exposure: Rgb,
     /// The factors of the `EXPOSURE=` lines.
     pub exposures: Vec<f64>,
+    /// Height over width of a pixel.
+    pub aspect: f64,
     pub view: Option<View>,
     /// Lines of block errors, without their key.
     pub errors: Vec<String>,
@@ -39,6 +49,7 @@ impl Default for Header {
             format: Format::Rgbe,
             exposure: Rgb::ONE,
             exposures: Vec::new(),
+            aspect: 1.0,
             view: None,
             errors: Vec::new(),
             sources: Vec::new(),
@@ -74,6 +85,10 @@ impl Header {
                 format!("expected dx dy dz solid_angle_sr R G B visible_fraction in \"{line}\"")
             })?);
         } else {
+            if let Some(value) = line.strip_prefix(ASPECT_KEY) {
+                self.aspect *=
+                    aspect(value).ok_or_else(|| format!("expected a positive number in \"{line}\""))?;
+            }
             let mut view = self.view.clone().unwrap_or_default();
             if apply_header_line(&mut view, line) {
                 self.view = Some(view);

@@ -9,9 +9,11 @@ mod orientation;
 mod read;
 mod rgbe;
 mod scanline;
+mod spectral;
 mod write;
 
 pub use errors::BlockErrors;
+pub use spectral::SpectralPicture;
 
 use crate::View;
 use sunpeak_core::{Rgb, Vec3, luminance_cd_m2};

@@ -40,6 +40,11 @@ impl Orientation {
         })
     }
 
+    /// Is it `-Y +X`: rows from the top, columns from the left?
+    pub fn is_standard(&self) -> bool {
+        self.rows_along_x && self.y_falls && !self.x_falls
+    }
+
     /// Number of rows in the file and pixels in each.
     pub fn rows(&self) -> (usize, usize) {
         if self.rows_along_x { (self.height, self.width) } else { (self.width, self.height) }
@@ -47,7 +52,7 @@ impl Orientation {
 
     /// Pixels in the file's order to the top row first, left to right. Nothing is copied where they stand so already.
     pub fn upright<T: Copy>(&self, pixels: Vec<T>) -> Vec<T> {
-        if self.rows_along_x && self.y_falls && !self.x_falls {
+        if self.is_standard() {
             return pixels;
         }
         let (_, length) = self.rows();

@@ -11,11 +11,15 @@ const MANTISSA_BITS: i32 = 8;
 
 /// Values of a pixel.
 pub fn decode([r, g, b, exponent]: [u8; 4]) -> [f64; 3] {
+    [r, g, b].map(|mantissa| component(mantissa, exponent))
+}
+
+/// One of the values of a pixel.
+pub fn component(mantissa: u8, exponent: u8) -> f64 {
     if exponent == 0 {
-        return [0.0; 3];
+        return 0.0;
     }
-    let step = 2f64.powi(i32::from(exponent) - EXPONENT_BIAS - MANTISSA_BITS);
-    [r, g, b].map(|mantissa| (f64::from(mantissa) + 0.5) * step)
+    (f64::from(mantissa) + 0.5) * 2f64.powi(i32::from(exponent) - EXPONENT_BIAS - MANTISSA_BITS)
 }
 
 /// The pixel of values. Negative ones and NaN, which it cannot hold, become 0; too large ones the largest.

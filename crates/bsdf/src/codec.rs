@@ -15,24 +15,29 @@ pub struct Encoder<W> {
 }
 
 impl<W: Write> Encoder<W> {
+    /// To a writer.
     pub fn new(inner: W) -> Self {
         Self { inner, hasher: blake3::Hasher::new() }
     }
 
+    /// Bytes as they are.
     pub fn bytes(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.hasher.update(bytes);
         self.inner.write_all(bytes)
     }
 
+    /// A number of things.
     pub fn count(&mut self, count: usize) -> io::Result<()> {
         self.bytes(&(count as u64).to_le_bytes())
     }
 
+    /// A text with its length.
     pub fn text(&mut self, text: &str) -> io::Result<()> {
         self.count(text.len())?;
         self.bytes(text.as_bytes())
     }
 
+    /// Numbers without their number.
     pub fn numbers(&mut self, numbers: impl IntoIterator<Item = f64>) -> io::Result<()> {
         numbers.into_iter().try_for_each(|n| self.bytes(&n.to_le_bytes()))
     }
@@ -78,6 +83,7 @@ impl<R: Read> Decoder<R> {
         Ok(())
     }
 
+    /// So many bytes.
     pub fn array<const N: usize>(&mut self) -> io::Result<[u8; N]> {
         let mut bytes = [0; N];
         self.fill(&mut bytes)?;
@@ -91,12 +97,14 @@ impl<R: Read> Decoder<R> {
         if fits { Ok(count as usize) } else { Err(damaged()) }
     }
 
+    /// A text.
     pub fn text(&mut self) -> io::Result<String> {
         let mut bytes = vec![0; self.count(1)?];
         self.fill(&mut bytes)?;
         String::from_utf8(bytes).map_err(|_| damaged())
     }
 
+    /// So many numbers.
     pub fn numbers<const N: usize>(&mut self) -> io::Result<[f64; N]> {
         let mut numbers = [0.0; N];
         for number in &mut numbers {

@@ -1,0 +1,79 @@
+//! How wavelengths weigh in the bands of a file, as WINDOW weighs them by default (NFRC 300-2003).
+
+use std::sync::OnceLock;
+
+/// A band of a BSDF file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Band {
+    /// CIE 1931 standard observer, y, times illuminant D65.
+    Visible,
+    /// Direct sunlight at air mass 1.5 (ASTM E891-87, table 1), 0.3 to 2.5 um.
+    Solar,
+}
+
+const PHOTOPIC: &str = include_str!("../../data/photopic_d65.txt");
+const SUN: &str = include_str!("../../data/solar_e891.txt");
+
+/// Visible wavelengths [um], where the visible values of a shade hold.
+const VISIBLE_UM: [f64; 2] = [0.38, 0.78];
+
+/// Is it light?
+pub fn is_visible(wavelength_um: f64) -> bool {
+    (VISIBLE_UM[0]..=VISIBLE_UM[1]).contains(&wavelength_um)
+}
+
+fn rows(text: &str) -> Vec<Vec<f64>> {
+    let numbers = |line: &str| line.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+    text.lines().filter(|line| !line.starts_with('#')).map(numbers).collect()
+}
+
+/// Trapezoidal weights of a curve; they add up to 1.
+fn trapezoids(curve: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mut weights: Vec<[f64; 2]> = curve.iter().map(|c| [c[0], 0.0]).collect();
+    for i in 1..curve.len() {
+        let half = 0.5 * (curve[i][0] - curve[i - 1][0]);
+        weights[i - 1][1] += half * curve[i - 1][1];
+        weights[i][1] += half * curve[i][1];
+    }
+    let sum: f64 = weights.iter().map(|w| w[1]).sum();
+    weights.iter_mut().for_each(|w| w[1] /= sum);
+    weights
+}
+
+impl Band {
+    /// Wavelengths [um] and their weights [-], which add up to 1.
+    pub fn weights(self) -> &'static [[f64; 2]] {
+        static WEIGHTS: [OnceLock<Vec<[f64; 2]>>; 2] = [OnceLock::new(), OnceLock::new()];
+        match self {
+            Self::Visible => WEIGHTS[0].get_or_init(|| {
+                let product = |row: Vec<f64>| [row[0] / 1000.0, row[1] * row[2]];
+                trapezoids(&rows(PHOTOPIC).into_iter().map(product).collect::<Vec<_>>())
+            }),
+            Self::Solar => WEIGHTS[1].get_or_init(|| {
+                trapezoids(&rows(SUN).into_iter().map(|row| [row[0], row[1]]).collect::<Vec<_>>())
+            }),
+        }
+    }
+
+    /// Share of the visible wavelengths in its weights [-].
+    pub fn visible_share(self) -> f64 {
+        self.weights().iter().filter(|w| is_visible(w[0])).map(|w| w[1]).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn weights_add_up_and_lie_where_they_should() {
+        for band in [Band::Visible, Band::Solar] {
+            let sum: f64 = band.weights().iter().map(|w| w[1]).sum();
+            assert!((sum - 1.0).abs() < 1e-12);
+        }
+        // The mean wavelength of daylight to the eye lies near 555 nm; about half of the sun's energy is visible.
+        let mean: f64 = Band::Visible.weights().iter().map(|w| w[0] * w[1]).sum();
+        assert!((mean - 0.56).abs() < 0.01, "{mean}");
+        assert!((0.45..0.6).contains(&Band::Solar.visible_share()));
+    }
+}

@@ -1,0 +1,49 @@
+//! BSDFs as files: written under a label, in another basis, the solar band.
+
+use crate::bsdf::PyBsdf;
+use crate::error::OrRaise;
+use pyo3::prelude::*;
+use std::path::PathBuf;
+use std::sync::Arc;
+use sunpeak_bsdf::{Bsdf, Conversion, Label};
+
+/// The text of an LBNL XML file; what is not given the BSDF says itself.
+#[pyfunction]
+#[pyo3(signature = (bsdf, solar=None, name=None, manufacturer=None, thickness_m=None, comments=None))]
+pub fn bsdf_xml(
+    py: Python<'_>,
+    bsdf: &PyBsdf,
+    solar: Option<PyRef<'_, PyBsdf>>,
+    name: Option<String>,
+    manufacturer: Option<String>,
+    thickness_m: Option<f64>,
+    comments: Option<String>,
+) -> PyResult<String> {
+    let label = Label { name, manufacturer, thickness_m, comments };
+    let solar = solar.map(|solar| solar.0.clone());
+    py.detach(|| bsdf.0.to_xml_as(&label, solar.as_deref())).or_raise()
+}
+
+/// The tables of a file's solar band, in the place of the luminous ones.
+#[pyfunction]
+pub fn load_solar(py: Python<'_>, path: PathBuf) -> PyResult<PyBsdf> {
+    Ok(PyBsdf(Arc::new(py.detach(|| Bsdf::load_solar(&path)).or_raise()?)))
+}
+
+/// The same product in another basis, moved, reciprocal.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "keywords of the Python face")]
+pub fn convert_bsdf(
+    py: Python<'_>,
+    bsdf: &PyBsdf,
+    basis: Option<&str>,
+    rotate_deg: f64,
+    flip: bool,
+    swap_sides: bool,
+    reciprocal: bool,
+    keep_peak: bool,
+) -> PyResult<PyBsdf> {
+    let basis = basis.map(str::parse).transpose().or_raise()?;
+    let to = Conversion { basis, flip, swap_sides, rotate_deg, reciprocal, keep_peak };
+    Ok(PyBsdf(Arc::new(py.detach(|| bsdf.0.convert(&to)).or_raise()?)))
+}
