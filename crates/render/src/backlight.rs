@@ -131,16 +131,40 @@ impl From {
     }
 }
 
+/// Is a flat piece of glass a window: the far field on one side, a room on the other, and no shade or other pane close to it there?
+pub(crate) fn is_window(world: &World, object: u32, triangles: &[Triangle]) -> bool {
+    let Facing::Flat(normal) = world.objects[object as usize].facing else { return false };
+    let sides = [normal, -normal].map(|away| probe(world, object, triangles, away).is_some());
+    let inside = match sides {
+        [true, false] => -normal,
+        [false, true] => normal,
+        _ => return false,
+    };
+    let first = |i| {
+        let (point, direction) = probing_ray(object, triangles, inside, i);
+        world.accel.closest(&Ray::new(point, direction), f64::INFINITY)
+    };
+    let is_veiled = |i: &u64| {
+        let material = first(*i).map(|hit| world.material(world.object(&hit).material));
+        matches!(material, Some(Material::Table(_) | Material::Glass(_)))
+    };
+    (0..PROBES).filter(is_veiled).count() < PROBES as usize / 2
+}
+
+/// A ray from a point of a surface.
+fn probing_ray(object: u32, triangles: &[Triangle], away: Vec3, i: u64) -> (Vec3, Vec3) {
+    let mut sampler = Sampler::new(0, u64::from(object), i);
+    let at = (sampler.next_1d() * triangles.len() as f64) as usize;
+    let point = Triangle::sample(sampler.next_2d(), triangles[at.min(triangles.len() - 1)].0);
+    (point, Frame::from_normal(away).to_world(warp::cosine_hemisphere(sampler.next_2d())))
+}
+
 /// Panes on the way to the far field from most points of a shade; `None` where most of the field does not come through.
 fn probe(world: &World, object: u32, triangles: &[Triangle], away: Vec3) -> Option<Vec<Pane>> {
-    let frame = Frame::from_normal(away);
     let mut whole = 0.0;
     let mut found: Vec<(f64, Vec<Pane>)> = Vec::new();
     for i in 0..PROBES {
-        let mut sampler = Sampler::new(0, u64::from(object), i);
-        let at = (sampler.next_1d() * triangles.len() as f64) as usize;
-        let point = Triangle::sample(sampler.next_2d(), triangles[at.min(triangles.len() - 1)].0);
-        let direction = frame.to_world(warp::cosine_hemisphere(sampler.next_2d()));
+        let (point, direction) = probing_ray(object, triangles, away, i);
         let light = luminance(world.distant.dome_radiance(direction));
         whole += light;
         let Some(panes) = panes_passed(world, point, direction) else { continue };
