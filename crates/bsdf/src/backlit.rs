@@ -20,12 +20,17 @@ use sunpeak_core::{Rgb, Vec3, warp::square_to_disk};
 /// Points a side at which the light is looked at; half of a degree at the zenith.
 const POINTS: usize = 256;
 
-/// Rings and azimuths in which the light on an isotropic tree is taken for level, points a side of such a cell at which the tree is
-/// looked at, and azimuths for which the result is kept.
+/// Rings and azimuths in which the light on an isotropic tree is taken for level, and azimuths for which the result is kept.
 const RINGS: usize = 64;
 const AZIMUTHS: usize = 128;
-const LOOKS: usize = 2;
 const KEPT_AZIMUTHS: usize = 64;
+
+/// Parts a side of the whole square into which cells are cut for that.
+const PARTS: f64 = 256.0;
+
+/// Against the table's direction: one look a side of a bin for so many cells a side of the tree, and at most so many.
+const LOOKS_PER_SIDE: f64 = 16.0;
+const MOST_LOOKS: usize = 6;
 
 /// Radiance behind a table, by direction.
 #[derive(Clone, Debug)]
@@ -219,7 +224,7 @@ fn polar(oriented: &Oriented, residual: bool, rings: usize, light: impl Fn(DVec2
     // Twice around, so that a turned ring is one stretch.
     let mut lights = [const { Vec::new() }; 3];
     for ring in 0..RINGS {
-        let angle = PI * (2 * ring + 1) as f64 / (RINGS * RINGS * AZIMUTHS) as f64;
+        let angle = bin_angle(ring);
         for k in 0..2 * AZIMUTHS {
             let light = light(point(ring as f64 + 0.5, (k % AZIMUTHS) as f64 + 0.5)) * angle;
             lights.iter_mut().zip(light.to_array()).for_each(|(channel, value)| channel.push(value));
@@ -229,17 +234,11 @@ fn polar(oriented: &Oriented, residual: bool, rings: usize, light: impl Fn(DVec2
     let mut values = Vec::with_capacity(rings * KEPT_AZIMUTHS);
     for ring in 0..rings {
         let p_in = DVec2::new((ring as f64 + 0.5) / rings as f64, 0.0);
-        let table: Vec<Rgb> = (0..RINGS * AZIMUTHS)
-            .map(|i| {
-                let look = |n: usize| {
-                    let within = |k: usize| (k as f64 + 0.5) / LOOKS as f64;
-                    let ring = (i / AZIMUTHS) as f64 + within(n / LOOKS);
-                    let p_out = point(ring, (i % AZIMUTHS) as f64 + within(n % LOOKS));
-                    oriented.value(p_in, p_out, residual)
-                };
-                (0..LOOKS * LOOKS).map(look).sum::<Rgb>() / (LOOKS * LOOKS) as f64
-            })
-            .collect();
+        let table = if oriented.reversed {
+            looked_at(oriented, residual, p_in)
+        } else {
+            flux(oriented, residual, p_in)
+        };
         let channels: [Vec<f64>; 3] = std::array::from_fn(|c| table.iter().map(|v| v[c]).collect());
         for turn in 0..KEPT_AZIMUTHS {
             let sum = |c: usize| -> f64 {
@@ -250,6 +249,54 @@ fn polar(oriented: &Oriented, residual: bool, rings: usize, light: impl Fn(DVec2
         }
     }
     values
+}
+
+/// A point of the exiting disk.
+fn point(ring: f64, azimuth: f64) -> DVec2 {
+    DVec2::from_angle(azimuth * TAU / AZIMUTHS as f64) * (ring / RINGS as f64)
+}
+
+/// Projected solid angle of each bin of a ring [sr].
+fn bin_angle(ring: usize) -> f64 {
+    PI * (2 * ring + 1) as f64 / (RINGS * RINGS * AZIMUTHS) as f64
+}
+
+/// Mean values in the bins, by what each cell of the column scatters into them: no flux is lost, however small a cell is.
+fn flux(oriented: &Oriented, residual: bool, p_in: DVec2) -> Vec<Rgb> {
+    let (table, columns) = (oriented.distribution.luminous(), oriented.distribution.columns());
+    let column = columns.index(p_in);
+    let mut bins = vec![Rgb::ZERO; RINGS * AZIMUTHS];
+    for cell in table.cells(columns, column) {
+        let value = value(oriented, residual, column, cell.index);
+        let size = cell.square().map_or(1.0, |square| f64::from(square.size));
+        let parts = (size * PARTS).ceil() as usize;
+        let share = cell.projected_solid_angle / (parts * parts) as f64;
+        for part in 0..parts * parts {
+            let within = |k: usize| (k as f64 + 0.5) / parts as f64;
+            let p_out = table.point(&cell, [within(part / parts), within(part % parts)]);
+            let ring = ((p_out.length() * RINGS as f64) as usize).min(RINGS - 1);
+            let turn = p_out.y.atan2(p_out.x) / TAU;
+            let azimuth = (((turn - turn.floor()) * AZIMUTHS as f64) as usize).min(AZIMUTHS - 1);
+            bins[ring * AZIMUTHS + azimuth] += value * (share / bin_angle(ring));
+        }
+    }
+    bins
+}
+
+/// Mean values in the bins by looking at points of them: against the table's direction cells of the exiting side are no columns.
+fn looked_at(oriented: &Oriented, residual: bool, p_in: DVec2) -> Vec<Rgb> {
+    let side = 1.0 / oriented.distribution.smallest_projected_solid_angle().max(1e-9).sqrt();
+    let looks = ((side / LOOKS_PER_SIDE).ceil() as usize).clamp(2, MOST_LOOKS);
+    let bin = |i: usize| {
+        let look = |n: usize| {
+            let within = |k: usize| (k as f64 + 0.5) / looks as f64;
+            let p_out =
+                point((i / AZIMUTHS) as f64 + within(n / looks), (i % AZIMUTHS) as f64 + within(n % looks));
+            oriented.value(p_in, p_out, residual)
+        };
+        (0..looks * looks).map(look).sum::<Rgb>() / (looks * looks) as f64
+    };
+    (0..RINGS * AZIMUTHS).map(bin).collect()
 }
 
 /// In lanes, so that it is done several at a time.

@@ -102,7 +102,7 @@ impl Film {
             width: self.width,
             height: self.height,
             header: vec![software(), settings(world, options, means)],
-            pixels: means.values.iter().map(|v| v.as_vec3().to_array()).collect(),
+            pixels: self.without_negative(&means.values).iter().map(|v| v.as_vec3().to_array()).collect(),
             view: Some(view.clone()),
             exact_sources: sources.to_vec(),
             block_errors,
@@ -112,6 +112,27 @@ impl Film {
             add(&mut picture, view, source);
         }
         picture
+    }
+
+    /// Differences from a far field can leave a dark pixel below zero. It becomes zero, and the others of its block give what it
+    /// lacks, so that the block's mean stays what it is.
+    fn without_negative(&self, values: &[Rgb]) -> Vec<Rgb> {
+        if values.iter().all(|value| value.min_element() >= 0.0) {
+            return values.to_vec();
+        }
+        let blocks = self.width.div_ceil(BLOCK) * self.height.div_ceil(BLOCK);
+        let mut sums = vec![(Rgb::ZERO, Rgb::ZERO); blocks];
+        for (pixel, value) in values.iter().enumerate() {
+            let (above, below) = &mut sums[self.block(pixel) as usize];
+            *above += value.max(Rgb::ZERO);
+            *below -= value.min(Rgb::ZERO);
+        }
+        let kept = |(above, below): (Rgb, Rgb)| {
+            ((above - below) / above.max(Rgb::splat(f64::MIN_POSITIVE))).clamp(Rgb::ZERO, Rgb::ONE)
+        };
+        let shares: Vec<Rgb> = sums.into_iter().map(kept).collect();
+        let share = |pixel: usize| shares[self.block(pixel) as usize];
+        values.iter().enumerate().map(|(pixel, value)| value.max(Rgb::ZERO) * share(pixel)).collect()
     }
 
     fn sample(&self, integrator: &Integrator, pixel: usize, draw: Draw) -> Rgb {

@@ -26,7 +26,7 @@ pub fn trace_radiance(
     let reports = Reports { control, rays: &world.rays };
     let means = estimate(rays.len(), options, reports, |item| item as u32, sample)?;
     world.check_expressions()?;
-    Ok(means.values)
+    Ok(not_negative(means.values))
 }
 
 /// Irradiance [W m⁻²] at sensors, each given by a point and a normal (of any length).
@@ -48,7 +48,12 @@ pub fn trace_irradiance(
     let reports = Reports { control, rays: &world.rays };
     let means = estimate(sensors.len(), options, reports, |item| item as u32, sample)?;
     world.check_expressions()?;
-    Ok(means.values)
+    Ok(not_negative(means.values))
+}
+
+/// Differences from a far field can leave a dark mean of few samples below zero.
+fn not_negative(values: Vec<Rgb>) -> Vec<Rgb> {
+    values.into_iter().map(|value| value.max(Rgb::ZERO)).collect()
 }
 
 /// Finite points and unit vectors.

@@ -48,6 +48,22 @@ fn radiance_is_the_integral_over_the_light() {
     }
 }
 
+/// A tree of 128 cells a side has a peak in one cell, far smaller than the bins: its flux is all there.
+#[test]
+fn no_flux_of_a_fine_tree_is_lost() {
+    let bsdf = bsdf(Basis::TensorTree3 { side: 128 });
+    for side in [1.0, -1.0] {
+        let backlit =
+            bsdf.backlit(side > 0.0, PeakRule::Off, |_| gray(1.0)).expect("something comes through");
+        for sine in [0.05, 0.3, 0.6, 0.8] {
+            let w_in = Vec3::new(0.6 * sine, 0.8 * sine, side * (1.0 - sine * sine).sqrt());
+            let truth = bsdf.hemispherical_smooth(w_in, crate::Mode::Transmission, PeakRule::Off);
+            let error = (backlit.radiance(w_in) / truth - Rgb::ONE).abs().max_element();
+            assert!(error < if side > 0.0 { 4e-3 } else { 3e-2 }, "{side} {sine}: {error}");
+        }
+    }
+}
+
 #[test]
 fn a_uniform_field_gives_the_hemispherical_transmittance() {
     for basis in [Basis::KlemsFull, Basis::TensorTree4 { side: 16 }, Basis::TensorTree3 { side: 32 }] {
