@@ -24,7 +24,7 @@ export VIRTUAL_ENV := $(CURDIR)/$(VENV)
 export PATH := $(BIN):$(PATH)
 unexport PYTHONHOME PYTHONPATH
 
-.PHONY: help build demo test test-rust test-python lint fmt bench fuzz docs lock clean
+.PHONY: help build demo test test-rust test-python lint fmt bench bench-transport fuzz docs lock clean
 
 help: ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 20
@@ -60,6 +60,9 @@ bench: build ## Benchmarks: name, ours, theirs, ratio for rays, sampling, throug
 	$(BIN)/python benches/large_files.py
 	$(BIN)/python benches/large_scene.py
 	$(BIN)/python benches/glare_picture.py
+
+bench-transport: build ## CPU time of rpict and of ours to the same error in ten rooms (an hour), kept in benches/runs
+	cd benches && $(BIN)/python -m transport --out runs/$$(date +%F)
 
 fuzz: ## Readers against hostile input, a minute each (needs a nightly compiler and cargo-fuzz)
 	for target in scene expression view picture bsdf; do \

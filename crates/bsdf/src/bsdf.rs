@@ -1,6 +1,7 @@
 //! One product: front and back, reflection and transmission, with the Radiance library's meaning of sides.
 
 use crate::{
+    backlit::Backlit,
     distribution::Distribution,
     peak::{PeakRule, reference},
     proposal::{Oriented, Proposal},
@@ -230,27 +231,30 @@ impl Bsdf {
         self.met(w_in, mode, rule).map_or(Rgb::ZERO, |lobe| lobe.hemispherical())
     }
 
+    /// What a side of the product gives off that a far field lights from the other side: the front for `at_front`. `light` is
+    /// the field's radiance in a direction of the BSDF's frame. What `rule` splits off is left out. `None` where nothing comes
+    /// through.
+    pub fn backlit(&self, at_front: bool, rule: PeakRule, light: impl Fn(Vec3) -> Rgb) -> Option<Backlit> {
+        let side = if at_front { 1.0 } else { -1.0 };
+        let oriented = self.distribution(Vec3::new(0.0, 0.0, side), Mode::Transmission)?;
+        let light_at = |p_out: DVec2| {
+            let height = (1.0 - p_out.length_squared()).max(0.0).sqrt();
+            light(p_out.extend(-side * height))
+        };
+        Some(Backlit::new(oriented, rule == PeakRule::Split, light_at))
+    }
+
     /// Sample the smooth part, reflection and transmission together, in proportion to luminous f |cos|; `None` if there is
     /// nothing to sample. `u` is uniform in the unit cube.
     pub fn sample_smooth(&self, w_in: Vec3, u: [f64; 3], rule: PeakRule) -> Option<Sample> {
-        let lobes = self.lobes_met(w_in, rule);
-        let share = reflected_share(&lobes)?;
-        let reflect = u[0] < share;
-        let (lobe, chosen, first) = if reflect {
-            (&lobes[0], share, u[0] / share)
+        let share = reflected_share(&self.lobes_met(w_in, rule))?;
+        let (mode, chosen, first) = if u[0] < share {
+            (Mode::Reflection, share, u[0] / share)
         } else {
-            (&lobes[1], 1.0 - share, (u[0] - share) / (1.0 - share))
+            (Mode::Transmission, 1.0 - share, (u[0] - share) / (1.0 - share))
         };
-        let lobe = lobe.as_ref()?;
-        let sampled = lobe.proposal.sample(incident_point(w_in), lobe.column, [first, u[1], u[2]])?;
-        let height = (1.0 - sampled.p_out.length_squared()).max(0.0).sqrt();
-        let above = (w_in.z > 0.0) == reflect;
-        let w_out = sampled.p_out.extend(if above { height } else { -height });
-        let pdf = sampled.density * chosen * height;
-        if pdf <= 0.0 {
-            return None;
-        }
-        Some(Sample { w_out, weight: sampled.value / (sampled.density * chosen), pdf })
+        let sample = self.sample_mode(w_in, mode, [first, u[1], u[2]], rule)?;
+        Some(Sample { w_out: sample.w_out, weight: sample.weight / chosen, pdf: sample.pdf * chosen })
     }
 
     /// Density [1/sr] of [`Self::sample_smooth`].
@@ -265,6 +269,28 @@ impl Bsdf {
         let (p_in, p_out) = (incident_point(w_in), exiting_point(w_out));
         let value = luminance(lobe.oriented.value(p_in, p_out, rule == PeakRule::Split));
         chosen * lobe.proposal.density(p_in, lobe.column, p_out, value) * w_out.z.abs()
+    }
+
+    /// Sample the smooth part of one mode, in proportion to luminous f |cos|; `None` if there is nothing to sample.
+    pub fn sample_mode(&self, w_in: Vec3, mode: Mode, u: [f64; 3], rule: PeakRule) -> Option<Sample> {
+        let lobe = self.met(w_in, mode, rule)?;
+        let sampled = lobe.proposal.sample(incident_point(w_in), lobe.column, u)?;
+        let height = (1.0 - sampled.p_out.length_squared()).max(0.0).sqrt();
+        let above = (w_in.z > 0.0) == (mode == Mode::Reflection);
+        let w_out = sampled.p_out.extend(if above { height } else { -height });
+        let pdf = sampled.density * height;
+        (pdf > 0.0).then(|| Sample { w_out, weight: sampled.value / sampled.density, pdf })
+    }
+
+    /// Density [1/sr] of [`Self::sample_mode`].
+    pub fn pdf_mode(&self, w_in: Vec3, w_out: Vec3, rule: PeakRule) -> f64 {
+        let Some(lobe) = self.met(w_in, mode(w_in, w_out), rule) else { return 0.0 };
+        if lobe.luminous() <= 0.0 {
+            return 0.0;
+        }
+        let (p_in, p_out) = (incident_point(w_in), exiting_point(w_out));
+        let value = luminance(lobe.oriented.value(p_in, p_out, rule == PeakRule::Split));
+        lobe.proposal.density(p_in, lobe.column, p_out, value) * w_out.z.abs()
     }
 
     #[inline]

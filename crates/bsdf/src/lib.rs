@@ -12,11 +12,12 @@
 //! # Ok::<(), sunpeak_core::Error>(())
 //! ```
 
+mod backlit;
 pub mod basis;
 mod bsdf;
 mod cache;
-mod convert;
 pub mod codec;
+mod convert;
 pub mod counted;
 mod distribution;
 mod exact_peak;
@@ -39,6 +40,7 @@ pub mod tree;
 pub mod xml;
 mod xml_write;
 
+pub use backlit::Backlit;
 pub use bsdf::{Bsdf, Mode, Sample, Sides};
 pub use cache::Cache;
 pub use convert::Conversion;

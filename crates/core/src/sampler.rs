@@ -40,6 +40,14 @@ impl Sampler {
         [self.next_1d(), self.next_1d()]
     }
 
+    /// Three numbers in [0, 1) that are well distributed together.
+    pub fn next_3d(&mut self) -> [f64; 3] {
+        if self.left < 3 {
+            self.refill();
+        }
+        [self.next_1d(), self.next_1d(), self.next_1d()]
+    }
+
     /// Past the last dimension set the sets repeat under another seed: deep bounces stay independent.
     fn refill(&mut self) {
         let sets = sobol_burley::NUM_DIMENSION_SETS_4D;

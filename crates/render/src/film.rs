@@ -2,10 +2,10 @@
 
 use crate::exact_sun::ExactSuns;
 use crate::integrator::{Integrator, Limits};
-use crate::passes::{Means, Reports, estimate_until};
+use crate::passes::{Draw, Means, Reports, estimate_until};
 use crate::shapes::Ray;
 use crate::{RenderOptions, World};
-use sunpeak_core::{Control, Error, LUMINOUS_EFFICACY, Result, Rgb, Sampler};
+use sunpeak_core::{Control, Error, LUMINOUS_EFFICACY, Result, Rgb};
 use sunpeak_scene::{BlockErrors, Camera, ExactSource, Picture, View, disc_coverage};
 
 /// Render a picture of `width` by `height` pixels; each pixel is the mean over its area (a box filter).
@@ -60,7 +60,7 @@ pub fn render_until(
         options,
         Reports { control, rays: &world.rays },
         |pixel| film.block(pixel),
-        |pixel, s| film.sample(&integrator, pixel, s),
+        |pixel, draw| film.sample(&integrator, pixel, draw),
         judge_means.as_ref().map(|judge| judge as _),
     )?;
     world.check_expressions()?;
@@ -102,7 +102,7 @@ impl Film {
             width: self.width,
             height: self.height,
             header: vec![software(), settings(world, options, means)],
-            pixels: means.values.iter().map(|v| v.as_vec3().to_array()).collect(),
+            pixels: self.without_negative(&means.values).iter().map(|v| v.as_vec3().to_array()).collect(),
             view: Some(view.clone()),
             exact_sources: sources.to_vec(),
             block_errors,
@@ -114,16 +114,44 @@ impl Film {
         picture
     }
 
-    fn sample(&self, integrator: &Integrator, pixel: usize, index: u64) -> Rgb {
-        let mut sampler = Sampler::new(self.seed, pixel as u64, index);
-        let [u, v] = sampler.next_2d();
+    /// Differences from a far field can leave a dark pixel below zero. It becomes zero, and the others of its block give what it
+    /// lacks, so that the block's mean stays what it is.
+    fn without_negative(&self, values: &[Rgb]) -> Vec<Rgb> {
+        if values.iter().all(|value| value.min_element() >= 0.0) {
+            return values.to_vec();
+        }
+        let blocks = self.width.div_ceil(BLOCK) * self.height.div_ceil(BLOCK);
+        let mut sums = vec![(Rgb::ZERO, Rgb::ZERO); blocks];
+        for (pixel, value) in values.iter().enumerate() {
+            let (above, below) = &mut sums[self.block(pixel) as usize];
+            *above += value.max(Rgb::ZERO);
+            *below -= value.min(Rgb::ZERO);
+        }
+        let kept = |(above, below): (Rgb, Rgb)| {
+            ((above - below) / above.max(Rgb::splat(f64::MIN_POSITIVE))).clamp(Rgb::ZERO, Rgb::ONE)
+        };
+        let shares: Vec<Rgb> = sums.into_iter().map(kept).collect();
+        let share = |pixel: usize| shares[self.block(pixel) as usize];
+        values.iter().enumerate().map(|(pixel, value)| value.max(Rgb::ZERO) * share(pixel)).collect()
+    }
+
+    fn sample(&self, integrator: &Integrator, pixel: usize, draw: Draw) -> Rgb {
         let (column, row) = (pixel % self.width, pixel / self.width);
+        let place = z_order(column % BLOCK, row % BLOCK);
+        let mut sampler = draw.together(self.seed, u64::from(self.block(pixel)), place);
+        let [u, v] = sampler.next_2d();
         let x = (column as f64 + u) / self.width as f64;
         let y = 1.0 - (row as f64 + v) / self.height as f64;
         let Some(ray) = self.camera.ray(x, y) else { return Rgb::ZERO };
         let start = Ray::new(ray.origin, ray.direction);
         integrator.radiance(start, ray.max_distance, &mut sampler)
     }
+}
+
+/// Place along the curve that goes through a square of 8 by 8 so that what is near on the curve is near in the square.
+fn z_order(column: usize, row: usize) -> u64 {
+    let bit = |k: usize| ((column >> k & 1) << (2 * k) | (row >> k & 1) << (2 * k + 1)) as u64;
+    bit(0) | bit(1) | bit(2)
 }
 
 /// The source's share of each pixel.

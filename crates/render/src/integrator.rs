@@ -7,11 +7,14 @@
 mod direct;
 mod path;
 
+use crate::accel::Hit;
+use crate::backlight::Backlight;
 use crate::exact_sun::ExactSuns;
-use crate::guide::Guide;
+use crate::guide::{Guide, Rates};
+use crate::light::power_heuristic;
 use crate::material::{Air, Arrival, Flight, Material, Scattering, Smooth, SmoothSample};
 use crate::shapes::Ray;
-use crate::world::{Facing, Object, Seen};
+use crate::world::{Facing, Seen};
 use crate::{RenderOptions, World};
 use path::{Departure, Path};
 use sunpeak_core::{Frame, Rgb, Sampler, Vec3, luminance};
@@ -19,6 +22,9 @@ use sunpeak_core::{Frame, Rgb, Sampler, Vec3, luminance};
 /// Russian roulette begins when a path carries less than this, and brings the paths that survive back to it. Higher, and paths
 /// that have come far are ended just before they meet the sky; lower, and they bounce on for nothing.
 const ROULETTE_BELOW: f64 = 0.05;
+
+/// Share of scattered paths that meet a shade before a far field and look for what differs from that.
+const CORRECTED: f64 = 0.3;
 
 /// Past so many events the chance of survival is never above the ceiling, so that paths in lossless rooms end.
 const ROULETTE_ALWAYS: u32 = 32;
@@ -52,7 +58,7 @@ impl Integrator<'_> {
     /// Radiance that arrives along the ray from surfaces before `reach` (and from infinity if that is infinite).
     pub fn radiance(&self, ray: Ray, reach: f64, sampler: &mut Sampler) -> Rgb {
         let inside = self.world.inside_at(&ray);
-        self.trace(Path::from_camera(ray, reach, inside), sampler)
+        self.trace(vec![Path::from_camera(ray, reach, inside)], sampler)
     }
 
     /// Irradiance [W/m²] on the front of a surface element.
@@ -60,14 +66,26 @@ impl Integrator<'_> {
         let sensor = Met::sensor(point, normal);
         let ray = Ray::new(point, -normal);
         let mut path = Path::from_camera(ray, f64::INFINITY, self.world.inside_at(&ray));
+        let mut branches = Vec::new();
         let direct = self.direct(&path, &sensor, sampler);
-        if !self.scatter(&mut path, &sensor, sampler) {
-            return direct + path.ambient;
+        if self.scatter(&mut path, &sensor, &mut branches, sampler) {
+            branches.push(path);
         }
-        direct + self.trace(path, sampler)
+        direct + path.ambient + self.trace(branches, sampler)
     }
 
-    fn trace(&self, mut path: Path, sampler: &mut Sampler) -> Rgb {
+    fn trace(&self, mut branches: Vec<Path>, sampler: &mut Sampler) -> Rgb {
+        let mut sum = Rgb::ZERO;
+        while let Some(mut path) = branches.pop() {
+            path.ambient = Rgb::ZERO;
+            sum += self.follow(&mut path, &mut branches, sampler) + path.ambient;
+        }
+        sum
+    }
+
+    /// Follow a path to its end; where the camera sees straight through a surface that does something else too, the straight chain
+    /// is put among the `branches`.
+    fn follow(&self, path: &mut Path, branches: &mut Vec<Path>, sampler: &mut Sampler) -> Rgb {
         let mut sum = Rgb::ZERO;
         while path.events <= self.limits.max_depth {
             let hit = self.world.accel.closest(&path.ray, path.reach);
@@ -79,8 +97,8 @@ impl Integrator<'_> {
                         path.throughput *= share;
                         let met = Met::air(&air, path.ray.at(distance), path.ray.direction);
                         path.travel(distance);
-                        sum += path.throughput * self.direct(&path, &met, sampler);
-                        if !self.scatter(&mut path, &met, sampler) || !survives(&mut path, sampler) {
+                        sum += path.throughput * self.direct(path, &met, sampler);
+                        if !self.scatter(path, &met, branches, sampler) || !survives(path, sampler) {
                             return sum;
                         }
                         continue;
@@ -88,7 +106,7 @@ impl Integrator<'_> {
                 }
             }
             let Some(hit) = hit else {
-                return sum + path.throughput * self.light_from_infinity(&path);
+                return sum + path.throughput * self.light_from_infinity(path);
             };
             let object = self.world.object(&hit);
             let (view, way) = (path.is_view(), path.way());
@@ -99,17 +117,28 @@ impl Integrator<'_> {
             match seen {
                 Seen::Void => path.go_straight(arrival.point, Rgb::ONE),
                 Seen::Emitter(emitter) => {
-                    return sum + path.throughput * self.light_from_lamp(&path, object, &arrival, emitter);
+                    return sum + path.throughput * self.light_from_lamp(path, object, &arrival, emitter);
                 }
                 Seen::Surface(material) => {
                     path.absorb(material, &arrival, hit.t);
-                    let met = Met::new(object, material, arrival, path.is_view());
+                    let mut met = Met::new(self.world, &hit, material, arrival, path.is_view());
+                    branches.extend(met.split_straight(path));
                     if met.smooth_share() > 0.0 {
-                        sum += path.throughput * self.direct(&path, &met, sampler);
+                        sum += path.throughput * self.direct_from_suns(path, &met, sampler);
+                        if met.backlight.is_some() && !path.is_view() {
+                            // Most of the shade's light is known; the rest, seldom looked for, counts the more.
+                            if sampler.next_1d() >= CORRECTED {
+                                return sum;
+                            }
+                            path.throughput /= CORRECTED;
+                        }
+                        sum += path.throughput * self.direct_from_others(path, &met, sampler);
                     }
-                    if !self.go_on(&mut path, &met, sampler) || !survives(&mut path, sampler) {
-                        return sum + path.ambient;
+                    if !self.go_on(path, &met, branches, sampler) || !survives(path, sampler) {
+                        return sum;
                     }
+                    // Only with a path that goes on: it finds in the mean what is taken off here.
+                    sum -= path.take_known();
                 }
             }
         }
@@ -117,7 +146,7 @@ impl Integrator<'_> {
     }
 
     /// Choose one of the ways on; `false` if the path ends here.
-    fn go_on(&self, path: &mut Path, met: &Met, sampler: &mut Sampler) -> bool {
+    fn go_on(&self, path: &mut Path, met: &Met, branches: &mut Vec<Path>, sampler: &mut Sampler) -> bool {
         let [straight, mirrored, refracted, smooth] = met.shares;
         let whole = straight + mirrored + refracted + smooth;
         if whole <= 0.0 {
@@ -125,8 +154,7 @@ impl Integrator<'_> {
         }
         let choice = sampler.next_1d() * whole;
         if choice < straight {
-            path.go_straight(met.straight_origin(), met.scattering.straight * (whole / straight));
-            path.is_past_peak |= matches!(met.material, Some(Material::Table(_)));
+            met.go_straight(path, whole / straight);
         } else if choice < straight + mirrored {
             path.mirror(&met.arrival, met.scattering.mirrored * (whole / mirrored), met.is_flat);
         } else if choice < straight + mirrored + refracted {
@@ -136,19 +164,61 @@ impl Integrator<'_> {
             let Some((direction, share)) = (if is_first { first } else { second }) else { return false };
             path.refract(&met.arrival, direction, share * (whole / luminance(share)), met.material);
         } else {
-            return self.scatter(path, met, sampler);
+            return self.scatter(path, met, branches, sampler);
         }
         true
     }
 
-    /// Go on in a direction drawn from the smooth lobes, or where the guide points.
-    fn scatter(&self, path: &mut Path, met: &Met, sampler: &mut Sampler) -> bool {
-        let Some(sample) = self.draw(met, sampler) else { return false };
+    /// Go on in directions drawn from the smooth lobes, and where the guide points: the first time each way, the others as
+    /// `branches`, later one way of all.
+    fn scatter(&self, path: &mut Path, met: &Met, branches: &mut Vec<Path>, sampler: &mut Sampler) -> bool {
+        let smooth = &met.scattering.smooth;
+        let Some((guide, rates)) = self.guided(path, smooth) else {
+            return smooth.draw(sampler).is_some_and(|sample| self.leave(path, met, &sample, sampler));
+        };
+        let point = met.arrival.point;
+        let go = |path: &mut Path, direction: Option<Vec3>, sampler: &mut Sampler| {
+            let sample = direction.and_then(|direction| mixed(met, guide, &rates, direction));
+            sample.is_some_and(|sample| self.leave(path, met, &sample, sampler))
+        };
+        if path.is_view() {
+            let mut branch = |direction: Option<Vec3>, path: &mut Path, sampler: &mut Sampler| {
+                let mut other = *path;
+                other.ambient = Rgb::ZERO;
+                if go(&mut other, direction, sampler) && survives(&mut other, sampler) {
+                    branches.push(other);
+                }
+                path.ambient += other.ambient;
+            };
+            if rates.shades > 0.0 {
+                branch(guide.sample_shades(point, sampler.next_3d()), path, sampler);
+            }
+            if rates.suns > 0.0 {
+                branch(guide.sample_suns(sampler.next_3d()), path, sampler);
+            }
+            let [u, v, choice] = sampler.next_3d();
+            let direction = smooth.sample(choice, [u, v], sampler).map(|sample| sample.direction);
+            return go(path, direction, sampler);
+        }
+        let [u, v, choice] = sampler.next_3d();
+        let direction = if choice < rates.own {
+            smooth.sample(choice / rates.own, [u, v], sampler).map(|sample| sample.direction)
+        } else if choice < rates.own + rates.shades {
+            guide.sample_shades(point, [(choice - rates.own) / rates.shades, u, v])
+        } else {
+            guide.sample_suns([(choice - rates.own - rates.shades) / rates.suns, u, v])
+        };
+        go(path, direction, sampler)
+    }
+
+    /// Leave a vertex in a drawn direction; `false` if that leads nowhere.
+    fn leave(&self, path: &mut Path, met: &Met, sample: &SmoothSample, sampler: &mut Sampler) -> bool {
         if !met.arrival.agrees_on(sample.direction) {
             return false;
         }
         let share = met.smooth_share();
         let mut weight = sample.weight.total();
+        let mut glossy = sample.weight.glossy;
         if weight == Rgb::ZERO {
             return false;
         }
@@ -157,42 +227,56 @@ impl Integrator<'_> {
             let diffuse = luminance(sample.weight.diffuse) / luminance(weight);
             let is_diffuse = sampler.next_1d() < diffuse;
             if is_diffuse && path.bounces >= limit {
-                path.ambient =
+                path.ambient +=
                     path.throughput * sample.weight.diffuse / (diffuse * share) * self.limits.ambient;
                 return false;
             }
-            weight = if is_diffuse {
-                sample.weight.diffuse / diffuse
+            (weight, glossy) = if is_diffuse {
+                (sample.weight.diffuse / diffuse, Rgb::ZERO)
             } else {
-                sample.weight.glossy / (1.0 - diffuse)
+                (glossy / (1.0 - diffuse), glossy / (1.0 - diffuse))
             };
             path.bounces += u32::from(is_diffuse);
         }
         let point = met.arrival.point + met.scattering.smooth.offset(sample.direction);
         let departure = Departure { point, pdf: sample.pdf * share, source_factor: sample.source_factor };
+        let mut known = Rgb::ZERO;
+        if let Some(backlight) = met.backlight {
+            known = self.known_light(backlight, sample, share) * glossy
+                / weight.max(Rgb::splat(f64::MIN_POSITIVE));
+        }
         path.depart(departure, sample.direction, weight / share);
+        path.known = known;
+        path.is_known = known != Rgb::ZERO;
         true
     }
 
-    fn draw(&self, met: &Met, sampler: &mut Sampler) -> Option<SmoothSample> {
-        let smooth = &met.scattering.smooth;
-        let Some(guide) = self.guide(smooth) else { return smooth.sample(sampler) };
-        let (choice, own) = (sampler.next_1d(), guide.own_share());
-        let direction = if choice < own {
-            smooth.sample(sampler)?.direction
-        } else {
-            guide.sample(met.arrival.point, (choice - own) / (1.0 - own), sampler.next_2d())?
-        };
-        let pdf = own * smooth.pdf(direction) + guide.pdf(met.arrival.point, direction);
-        let cosine = direction.dot(met.arrival.normal).abs();
-        let source_factor = smooth.source_factor(direction);
-        let weight = smooth.evaluate(direction).scaled(cosine / pdf);
-        (pdf > 0.0).then_some(SmoothSample { direction, weight, pdf, source_factor })
+    /// What the path will find of the far field, and what the shade's radiance holds already.
+    fn known_light(&self, backlight: &Backlight, sample: &SmoothSample, share: f64) -> Rgb {
+        let sky = self.world.distant.dome_radiance(sample.direction);
+        let field = backlight.field(self.world, sample.direction, sky);
+        if field == Rgb::ZERO {
+            return field;
+        }
+        field * power_heuristic(sample.pdf * share, self.world.distant.dome_pdf(sample.direction))
     }
 
-    fn guide(&self, smooth: &Smooth) -> Option<&Guide> {
-        self.world.guide.as_ref().filter(|_| smooth.can_be_guided())
+    /// The guide, if it helps these lobes, and how many directions it is asked for here.
+    fn guided(&self, path: &Path, smooth: &Smooth) -> Option<(&Guide, Rates)> {
+        let guide = self.world.guide.as_ref().filter(|_| smooth.can_be_guided())?;
+        Some((guide, if path.is_view() { guide.one_each() } else { guide.one_direction() }))
     }
+}
+
+/// A direction that the lobes or the guide have drawn, weighed by the density of all that could have drawn it (Veach 1997,
+/// section 9.2: balance heuristic).
+fn mixed(met: &Met, guide: &Guide, rates: &Rates, direction: Vec3) -> Option<SmoothSample> {
+    let smooth = &met.scattering.smooth;
+    let pdf = rates.own * smooth.pdf(direction) + guide.pdf(rates, met.arrival.point, direction);
+    let cosine = direction.dot(met.arrival.normal).abs();
+    let source_factor = smooth.source_factor(direction);
+    let weight = smooth.evaluate(direction).scaled(cosine / pdf);
+    (pdf > 0.0).then_some(SmoothSample { direction, weight, pdf, source_factor })
 }
 
 /// A surface that a path has met.
@@ -204,23 +288,55 @@ struct Met<'w> {
     scattering: Scattering<'w>,
     /// Luminous weights of the ways on: straight, mirrored, refracted, smooth.
     shares: [f64; 4],
+    /// The far field behind it.
+    backlight: Option<&'w Backlight>,
 }
 
 impl<'w> Met<'w> {
-    fn new(object: &Object, material: &'w Material, arrival: Arrival, view: bool) -> Self {
+    fn new(world: &'w World, hit: &Hit, material: &'w Material, arrival: Arrival, view: bool) -> Self {
+        let object = world.object(hit);
         let scattering = material.scatter(&arrival, view);
         let refracted = scattering.refracted.iter().flatten().map(|(_, share)| luminance(*share)).sum();
         let [straight, mirrored] = [scattering.straight, scattering.mirrored].map(luminance);
         let shares = [straight, mirrored, refracted, scattering.smooth.albedo()];
         let is_flat = matches!(object.facing, Facing::Flat(_));
-        Self { arrival, material: Some(material), is_flat, scattering, shares }
+        let backlight = match scattering.smooth {
+            Smooth::Table(_) => world.backlights.of(hit.object, arrival.at_front()),
+            _ => None,
+        };
+        Self { arrival, material: Some(material), is_flat, scattering, shares, backlight }
+    }
+
+    /// The straight chain of a path that something else happens to as well, where it is not left to chance: from the camera, and
+    /// from a shade to the far field that is known behind it.
+    fn split_straight(&mut self, path: &Path) -> Option<Path> {
+        let [straight, rest @ ..] = &mut self.shares;
+        if !(path.is_view() || path.is_known) || *straight <= 0.0 || *rest == [0.0; 3] {
+            return None;
+        }
+        *straight = 0.0;
+        let mut chain = *path;
+        self.go_straight(&mut chain, 1.0);
+        Some(chain)
+    }
+
+    fn go_straight(&self, path: &mut Path, weight: f64) {
+        path.go_straight(self.straight_origin(), self.scattering.straight * weight);
+        path.is_past_peak |= matches!(self.material, Some(Material::Table(_)));
     }
 
     /// A point of the air at which a ray of this direction is scattered.
     fn air(air: &Air, point: Vec3, direction: Vec3) -> Self {
         let scattering = Scattering { smooth: Smooth::Phase(air.phase(direction)), ..Scattering::BLACK };
         let arrival = Arrival::new(point, -direction, direction);
-        Self { arrival, material: None, is_flat: true, scattering, shares: [0.0, 0.0, 0.0, 1.0] }
+        Self {
+            arrival,
+            material: None,
+            is_flat: true,
+            scattering,
+            shares: [0.0, 0.0, 0.0, 1.0],
+            backlight: None,
+        }
     }
 
     /// Where light that is scattered starts: at the surface, and beyond what a table with thickness stands for.
@@ -245,7 +361,14 @@ impl<'w> Met<'w> {
         let arrival = Arrival::new(point, normal, -normal);
         let scattering =
             Scattering { smooth: Smooth::Sensor(Frame::from_normal(normal)), ..Scattering::BLACK };
-        Self { arrival, material: None, is_flat: true, scattering, shares: [0.0, 0.0, 0.0, 1.0] }
+        Self {
+            arrival,
+            material: None,
+            is_flat: true,
+            scattering,
+            shares: [0.0, 0.0, 0.0, 1.0],
+            backlight: None,
+        }
     }
 
     /// Chance that a path goes on by the smooth lobes.

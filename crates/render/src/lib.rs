@@ -24,8 +24,9 @@
 //!
 //! # Behind shades
 //! Where a scene has shades (surfaces of a BSDF table or of `trans`), diffuse surfaces draw part of their directions towards them
-//! and around the suns: light that a shade scatters is found by paths alone. Light that passes a table's peak from an emitter is left
-//! to shadow rays, which find it better than the few sampled paths that go straight.
+//! and against those into which their tables send the suns: light that a shade scatters is found by paths alone. Of a shade
+//! before a far field the light is known beforehand, and paths add only what differs from it. Light that passes a table's peak
+//! from an emitter is left to shadow rays, which find it better than the few sampled paths that go straight.
 //!
 //! # What is left out
 //! A sun (a `source` narrower than [`SMALL_SOURCE_DEG`]) that a scattered path meets by way of a mirror or a solid of glass does
@@ -47,6 +48,7 @@
 //! - `dielectric`s do not disperse.
 
 mod accel;
+mod backlight;
 mod exact_sun;
 mod film;
 mod goniophotometer;

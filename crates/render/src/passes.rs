@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
-use sunpeak_core::{Control, Error, Result, Rgb};
+use sunpeak_core::{Control, Error, Result, Rgb, Sampler};
 
 /// Items that a thread takes at once.
 const CHUNK: usize = 64;
@@ -30,6 +30,31 @@ pub(crate) struct Means {
     pub group_errors: Option<Vec<f64>>,
 }
 
+/// Which of an item's samples is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Draw {
+    /// Samples of the passes before.
+    pub done: u32,
+    /// Samples of this pass.
+    pub pass: u32,
+    /// Of them this one.
+    pub index: u32,
+}
+
+impl Draw {
+    /// Numbers of an item by itself: all its samples are one sequence.
+    pub fn alone(&self, seed: u64, item: u64) -> Sampler {
+        Sampler::new(seed, item, u64::from(self.done + self.index))
+    }
+
+    /// Numbers of a member of a group of `size`, by its place among them: in each pass the samples of the whole group are one
+    /// sequence, each member's a stretch of it, so that the group's mean profits too (Ahmed and Wonka 2020).
+    pub fn together(&self, seed: u64, group: u64, place: u64) -> Sampler {
+        let stream = group << 32 | u64::from(self.done);
+        Sampler::new(seed, stream, place * u64::from(self.pass) + u64::from(self.index))
+    }
+}
+
 /// Says after a pass whether the means are good enough.
 pub(crate) type Judge<'a> = &'a dyn Fn(&Means) -> Result<bool>;
 
@@ -41,13 +66,13 @@ pub(crate) struct Reports<'a> {
     pub rays: &'a AtomicU64,
 }
 
-/// Estimate `items` values; `sample(item, index)` is one estimate of one of them. `group` says whose error counts together.
+/// Estimate `items` values; `sample(item, draw)` is one estimate of one of them. `group` says whose error counts together.
 pub(crate) fn estimate(
     items: usize,
     options: &RenderOptions,
     reports: Reports,
     group: impl Fn(usize) -> u32,
-    sample: impl Fn(usize, u64) -> Rgb + Sync,
+    sample: impl Fn(usize, Draw) -> Rgb + Sync,
 ) -> Result<Means> {
     estimate_until(items, options, reports, group, sample, None)
 }
@@ -58,7 +83,7 @@ pub(crate) fn estimate_until(
     options: &RenderOptions,
     reports: Reports,
     group: impl Fn(usize) -> u32,
-    sample: impl Fn(usize, u64) -> Rgb + Sync,
+    sample: impl Fn(usize, Draw) -> Rgb + Sync,
     judge: Option<Judge>,
 ) -> Result<Means> {
     let goal = Goal::new(items, options, judge.is_some())?;
@@ -95,7 +120,7 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    fn pass(&mut self, pass: u32, sample: &(impl Fn(usize, u64) -> Rgb + Sync)) -> Result<()> {
+    fn pass(&mut self, pass: u32, sample: &(impl Fn(usize, Draw) -> Rgb + Sync)) -> Result<()> {
         let (done, reports, goal) = (self.done, self.reports, self.goal);
         self.sums.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, sums)| {
             if reports.control.is_stopped() {
@@ -103,7 +128,8 @@ impl Run<'_> {
             }
             let before = rays_of_this_thread();
             for (i, sum) in sums.iter_mut().enumerate() {
-                *sum += (done..done + pass).map(|s| sample(chunk * CHUNK + i, u64::from(s))).sum::<Rgb>();
+                let draw = |index| Draw { done, pass, index };
+                *sum += (0..pass).map(|index| sample(chunk * CHUNK + i, draw(index))).sum::<Rgb>();
             }
             reports.rays.fetch_add(rays_of_this_thread() - before, Ordering::Relaxed);
             goal.report(reports.control, sums.len() as u64 * u64::from(pass));
@@ -229,7 +255,7 @@ mod tests {
                 &options,
                 reports(&control),
                 |i| i as u32,
-                |i, s| Rgb::splat(i as f64 + (s as f64).sqrt()),
+                |i, draw| Rgb::splat(i as f64 + f64::from(draw.done + draw.index).sqrt()),
             )
             .expect("runs");
             assert_eq!((means.samples, control.progress()), (37, (37_000, 37_000)));
@@ -245,7 +271,7 @@ mod tests {
     fn time_is_kept_and_a_stop_is_heard() {
         let options = RenderOptions { time_s: Some(0.2), threads: Some(1), ..Default::default() };
         let start = Instant::now();
-        let slow = |_, _| {
+        let slow = |_, _: Draw| {
             std::thread::sleep(Duration::from_millis(1));
             Rgb::ONE
         };

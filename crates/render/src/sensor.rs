@@ -1,10 +1,10 @@
 //! Single rays and irradiance sensors, as `rtrace` and `rtrace -I`.
 
 use crate::integrator::{Integrator, Limits};
-use crate::passes::{Reports, estimate};
+use crate::passes::{Draw, Reports, estimate};
 use crate::shapes::Ray;
 use crate::{RenderOptions, World};
-use sunpeak_core::{Control, Error, Result, Rgb, Sampler, Vec3};
+use sunpeak_core::{Control, Error, Result, Rgb, Vec3};
 
 /// Radiance [W sr⁻¹ m⁻²] along rays, each given by origin and direction (of any length).
 ///
@@ -18,15 +18,15 @@ pub fn trace_radiance(
 ) -> Result<Vec<Rgb>> {
     let rays = checked(rays, "ray", "direction")?;
     let integrator = Integrator { world, limits: Limits::of(options), exact_suns: None };
-    let sample = |item: usize, index| {
+    let sample = |item: usize, draw: Draw| {
         let (origin, direction) = rays[item];
-        let mut sampler = Sampler::new(options.seed, item as u64, index);
+        let mut sampler = draw.alone(options.seed, item as u64);
         integrator.radiance(Ray::new(origin, direction), f64::INFINITY, &mut sampler)
     };
     let reports = Reports { control, rays: &world.rays };
     let means = estimate(rays.len(), options, reports, |item| item as u32, sample)?;
     world.check_expressions()?;
-    Ok(means.values)
+    Ok(not_negative(means.values))
 }
 
 /// Irradiance [W m⁻²] at sensors, each given by a point and a normal (of any length).
@@ -41,14 +41,19 @@ pub fn trace_irradiance(
 ) -> Result<Vec<Rgb>> {
     let sensors = checked(sensors, "sensor", "normal")?;
     let integrator = Integrator { world, limits: Limits::of(options), exact_suns: None };
-    let sample = |item: usize, index| {
+    let sample = |item: usize, draw: Draw| {
         let (point, normal) = sensors[item];
-        integrator.irradiance(point, normal, &mut Sampler::new(options.seed, item as u64, index))
+        integrator.irradiance(point, normal, &mut draw.alone(options.seed, item as u64))
     };
     let reports = Reports { control, rays: &world.rays };
     let means = estimate(sensors.len(), options, reports, |item| item as u32, sample)?;
     world.check_expressions()?;
-    Ok(means.values)
+    Ok(not_negative(means.values))
+}
+
+/// Differences from a far field can leave a dark mean of few samples below zero.
+fn not_negative(values: Vec<Rgb>) -> Vec<Rgb> {
+    values.into_iter().map(|value| value.max(Rgb::ZERO)).collect()
 }
 
 /// Finite points and unit vectors.

@@ -4,6 +4,7 @@ mod compile;
 
 use crate::WorldOptions;
 use crate::accel::{Accel, Hit};
+use crate::backlight::Backlights;
 use crate::guide::Guide;
 use crate::light::{DistantSources, Lamps};
 use crate::material::{
@@ -37,6 +38,8 @@ pub struct World {
     pub(crate) rays: AtomicU64,
     /// Where diffuse surfaces look for light, if there are shades.
     pub(crate) guide: Option<Guide>,
+    /// What shades give off in the light of sky and ground.
+    pub(crate) backlights: Backlights,
     /// Meshes with normals or local coordinates at their vertices.
     pub(crate) meshes: Vec<MeshSurface>,
     /// Is there mist or antimatter?

@@ -12,8 +12,8 @@ from sunpeak.cli.bsdf_convert import convert
 from sunpeak.cli.bsdf_fabric import fabric
 from sunpeak.cli.bsdf_formula import HELP as FORMULA_HELP
 from sunpeak.cli.bsdf_formula import formula
-from sunpeak.cli.bsdf_sheets import mesh, perforated
 from sunpeak.cli.bsdf_generate import generate
+from sunpeak.cli.bsdf_sheets import mesh, perforated
 from sunpeak.cli.bsdf_show import show
 from sunpeak.cli.bsdf_system import system
 from sunpeak.cli.options import Quiet

@@ -199,7 +199,7 @@ impl<'w> Walker<'w> {
                         // The ray may have crossed sides since: back from where it is now.
                         let point = self.cell.wrapped(self.ray.at(distance - passed));
                         let phase = Smooth::Phase(air.phase(self.ray.direction));
-                        let Some(sample) = phase.sample(sampler) else { return End::Absorbed };
+                        let Some(sample) = phase.draw(sampler) else { return End::Absorbed };
                         self.travel(distance);
                         self.leave_for(point, sample.direction, sample.weight.total(), Way::Scattered);
                         if !self.survives(sampler) {
@@ -304,7 +304,7 @@ impl<'w> Walker<'w> {
                 _ => Rgb::ZERO,
             };
         } else {
-            let Some(sample) = scattering.smooth.sample(sampler) else { return false };
+            let Some(sample) = scattering.smooth.draw(sampler) else { return false };
             let weight = sample.weight.total() * (whole / smooth);
             if weight == Rgb::ZERO || !arrival.agrees_on(sample.direction) {
                 return false;

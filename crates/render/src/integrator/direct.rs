@@ -2,9 +2,10 @@
 
 use super::{Integrator, Met, path::Path};
 use crate::accel::Hit;
-use crate::guide::Guide;
+use crate::backlight::Backlight;
+use crate::guide::{Guide, Rates};
 use crate::light::{LightSample, at_infinity, power_heuristic};
-use crate::material::{Arrival, Emitter, Inside, Smooth, reflect};
+use crate::material::{Arrival, Emitter, Inside, Smooth, SmoothValue, reflect};
 use crate::shapes::Ray;
 use crate::transmit::Target;
 use crate::world::{Facing, Object};
@@ -18,15 +19,28 @@ const ALL_REFLECTED_SUNS: usize = 4;
 impl Integrator<'_> {
     /// Light from emitters that the smooth lobes scatter back along the path.
     pub(super) fn direct(&self, path: &Path, met: &Met, sampler: &mut Sampler) -> Rgb {
-        let receiver = Receiver {
+        self.direct_from_suns(path, met, sampler) + self.direct_from_others(path, met, sampler)
+    }
+
+    fn receiver<'a, 'w>(&'a self, path: &Path, met: &'a Met<'w>) -> Receiver<'a, 'w> {
+        Receiver {
             arrival: &met.arrival,
             smooth: &met.scattering.smooth,
             share: met.smooth_share(),
             is_last: self.is_last(path),
-            guide: self.guide(&met.scattering.smooth),
+            guide: self.guided(path, &met.scattering.smooth),
             inside: path.inside,
+            backlight: met.backlight,
+        }
+    }
+
+    /// The part from suns, and what a shade gives off in the light of a far field.
+    pub(super) fn direct_from_suns(&self, path: &Path, met: &Met, sampler: &mut Sampler) -> Rgb {
+        let receiver = self.receiver(path, met);
+        let mut sum = match (&met.scattering.smooth, met.backlight) {
+            (Smooth::Table(lobes), Some(backlight)) => lobes.backlit(backlight),
+            _ => Rgb::ZERO,
         };
-        let mut sum = Rgb::ZERO;
         for &sun in self.world.distant.suns() {
             if let Some(sample) = self.world.distant.sample_sun(sun, sampler.next_2d()) {
                 sum += self.received(&receiver, &sample, &Target::sun(sun, &sample));
@@ -36,6 +50,13 @@ impl Integrator<'_> {
         if !self.world.prisms.is_empty() {
             sum += self.suns_through_prisms(&receiver, sampler);
         }
+        sum
+    }
+
+    /// The part from sky, ground and lamps, less what of it is known.
+    pub(super) fn direct_from_others(&self, path: &Path, met: &Met, sampler: &mut Sampler) -> Rgb {
+        let receiver = self.receiver(path, met);
+        let mut sum = Rgb::ZERO;
         if self.world.distant.has_dome()
             && let Some(sample) = self.world.distant.sample_dome(sampler.next_2d())
         {
@@ -69,8 +90,9 @@ impl Integrator<'_> {
         }
         let ray = Ray::new(receiver.origin(sample.direction), sample.direction);
         let transmitted = self.world.transmitted(&ray, target, receiver.inside);
+        let known = self.known_dome_light(receiver, sample, &value);
         if transmitted.is_blocked() {
-            return Rgb::ZERO;
+            return -known;
         }
         let finds =
             !transmitted.only_by_shadow_rays && (!sample.is_direct || receiver.smooth.samples_find_sources());
@@ -84,6 +106,18 @@ impl Integrator<'_> {
         };
         let scattered = value.diffuse * diffuse_weight + value.glossy * weight;
         scattered * sample.radiance * transmitted.share * (receiver.cosine(sample.direction) / sample.pdf)
+            - known
+    }
+
+    /// What the sample would bring in the far field, which the shade's radiance holds already.
+    fn known_dome_light(&self, receiver: &Receiver, sample: &LightSample, value: &SmoothValue) -> Rgb {
+        let Some(backlight) = receiver.backlight.filter(|_| sample.is_dome) else { return Rgb::ZERO };
+        let field = backlight.field(self.world, sample.direction, sample.radiance);
+        if field == Rgb::ZERO {
+            return field;
+        }
+        let weight = power_heuristic(sample.pdf, receiver.share * receiver.pdf(sample.direction));
+        value.glossy * field * (weight * receiver.cosine(sample.direction) / sample.pdf)
     }
 
     /// Suns reflected by planar mirrors: Radiance's virtual sources. Sampled paths leave them out.
@@ -252,13 +286,15 @@ struct Receiver<'a, 'w> {
     share: f64,
     /// May no diffuse bounce follow?
     is_last: bool,
-    guide: Option<&'a Guide>,
+    guide: Option<(&'a Guide, Rates)>,
     /// Mist and antimatter around.
     inside: Inside,
+    /// What is known of the light behind.
+    backlight: Option<&'a Backlight>,
 }
 
 impl Receiver<'_, '_> {
-    fn smooth_value(&self, sample: &LightSample) -> crate::material::SmoothValue {
+    fn smooth_value(&self, sample: &LightSample) -> SmoothValue {
         if sample.is_direct {
             self.smooth.toward_source(sample.direction, sample.solid_angle)
         } else {
@@ -269,8 +305,8 @@ impl Receiver<'_, '_> {
     /// Density [1/sr] with which paths go on in this direction, if they go on by the smooth lobes.
     fn pdf(&self, direction: Vec3) -> f64 {
         let own = self.smooth.pdf(direction);
-        match self.guide {
-            Some(guide) => guide.own_share() * own + guide.pdf(self.arrival.point, direction),
+        match &self.guide {
+            Some((guide, rates)) => rates.own * own + guide.pdf(rates, self.arrival.point, direction),
             None => own,
         }
     }

@@ -37,6 +37,10 @@ pub(super) struct Path {
     pub first_direction: Vec3,
     /// What the light past the last diffuse bounce adds at the end.
     pub ambient: Rgb,
+    /// Radiance that the path may find of a far field that was counted before (see [`crate::backlight`]).
+    pub known: Rgb,
+    /// May it find such light?
+    pub is_known: bool,
     /// Extinction of the solid that the path is in [1/m].
     extinction: Rgb,
     /// Way since the camera, and since the path was last scattered, mirrored or refracted [m].
@@ -60,6 +64,8 @@ impl Path {
             is_distorted: false,
             first_direction: ray.direction,
             ambient: Rgb::ZERO,
+            known: Rgb::ZERO,
+            is_known: false,
             extinction: Rgb::ZERO,
             travelled: 0.0,
             distance: 0.0,
@@ -70,6 +76,11 @@ impl Path {
     /// Does the path come from the camera with nothing but straight passes, mirrors and refractions?
     pub fn is_view(&self) -> bool {
         self.departure.is_none()
+    }
+
+    /// Take off what is known, times what the path carries, once.
+    pub fn take_known(&mut self) -> Rgb {
+        std::mem::replace(&mut self.known, Rgb::ZERO) * self.throughput
     }
 
     /// Count the way to a surface.
@@ -133,5 +144,6 @@ impl Path {
         self.departure = Some(departure);
         self.is_bent = false;
         self.is_past_peak = false;
+        self.is_known = false;
     }
 }

@@ -110,7 +110,7 @@ impl DistantSources {
     }
 
     /// Radiance of all that lights and is no sun.
-    fn dome_radiance(&self, direction: Vec3) -> Rgb {
+    pub fn dome_radiance(&self, direction: Vec3) -> Rgb {
         match self.seen(direction).map(|i| &self.sources[i]) {
             Some(s) if !s.is_small() && s.emitter.illuminates() => {
                 s.emitter.radiance(&at_infinity(direction))
@@ -127,6 +127,11 @@ impl DistantSources {
             (Some(dome), false) => dome.pdf(direction),
             (None, false) => 0.0,
         }
+    }
+
+    /// Density [1/sr] with which shadow rays are sent to the sky.
+    pub fn dome_pdf(&self, direction: Vec3) -> f64 {
+        self.dome.as_ref().map_or(0.0, |dome| dome.pdf(direction))
     }
 
     /// A direction to sun `index`; `None` where another source stands before it.
@@ -155,6 +160,7 @@ impl DistantSources {
             pdf,
             solid_angle: source.solid_angle(),
             is_direct: source.emitter.is_direct(f64::INFINITY),
+            is_dome: !source.is_small(),
             object: None,
             is_hidden_by_illum: source.emitter.is_hidden_by_illum(),
         }

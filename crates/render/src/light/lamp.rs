@@ -185,6 +185,7 @@ impl Lamp {
             solid_angle: (1.0 / pdf).min(4.0 * PI),
             is_direct: self.emitter.is_direct(distance),
             object: Some(self.object),
+            is_dome: false,
             is_hidden_by_illum: self.emitter.is_hidden_by_illum(),
         }
     }

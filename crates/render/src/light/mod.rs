@@ -26,6 +26,8 @@ pub(crate) struct LightSample {
     pub solid_angle: f64,
     /// Is it a light source here (and not seen by indirect rays only)?
     pub is_direct: bool,
+    /// Is it the sky, or another wide source at infinity?
+    pub is_dome: bool,
     /// The object that emits, if it is in the room.
     pub object: Option<u32>,
     /// May an `illum` on the way take its place?

@@ -160,23 +160,30 @@ impl Smooth<'_> {
         }
     }
 
-    /// Draw a direction; `None` if the draw fell where nothing is scattered.
-    pub fn sample(&self, sampler: &mut Sampler) -> Option<SmoothSample> {
+    /// Draw a direction; `None` as for [`Self::sample`].
+    pub fn draw(&self, sampler: &mut Sampler) -> Option<SmoothSample> {
+        let (u, choice) = (sampler.next_2d(), sampler.next_1d());
+        self.sample(choice, u, sampler)
+    }
+
+    /// Draw a direction by a number that chooses the lobe and a point of the square; `None` if the draw fell where nothing is
+    /// scattered.
+    pub fn sample(&self, choice: f64, u: [f64; 2], sampler: &mut Sampler) -> Option<SmoothSample> {
         match self {
             Self::None => None,
             Self::Sensor(frame) => {
-                let local = warp::cosine_hemisphere(sampler.next_2d());
+                let local = warp::cosine_hemisphere(u);
                 let weight = SmoothValue { diffuse: Rgb::splat(std::f64::consts::PI), glossy: Rgb::ZERO };
                 let pdf = local.z * FRAC_1_PI;
                 let direction = frame.to_world(local);
                 (pdf > 0.0).then_some(SmoothSample { direction, weight, pdf, source_factor: 1.0 })
             }
-            Self::Ward(lobes) => lobes.sample(sampler.next_1d(), sampler.next_2d()),
-            Self::Wgmd(lobes) => lobes.sample(sampler.next_1d(), sampler.next_2d()),
-            Self::Ashikhmin(lobes) => lobes.sample(sampler.next_1d(), sampler.next_2d()),
-            Self::Table(lobes) => lobes.sample(sampler.next_1d(), sampler.next_2d(), sampler.next_1d()),
-            Self::Function(lobes) => lobes.sample(sampler.next_1d(), sampler.next_2d()),
-            Self::Phase(phase) => Some(phase.sample(sampler.next_1d(), sampler.next_2d())),
+            Self::Ward(lobes) => lobes.sample(choice, u),
+            Self::Wgmd(lobes) => lobes.sample(choice, u),
+            Self::Ashikhmin(lobes) => lobes.sample(choice, u),
+            Self::Table(lobes) => lobes.sample(choice, u, sampler.next_1d()),
+            Self::Function(lobes) => lobes.sample(choice, u),
+            Self::Phase(phase) => Some(phase.sample(choice, u)),
         }
     }
 }

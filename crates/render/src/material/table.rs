@@ -12,8 +12,9 @@
 //! rules such a table is whole, and the straight light of an emitter does count twice, as in Radiance.)
 
 use super::{Arrival, Scattering, Smooth, SmoothValue, smooth::SmoothSample};
+use crate::backlight::Backlight;
 use std::{f64::consts::FRAC_1_PI, sync::Arc};
-use sunpeak_bsdf::{Bsdf, Mode, PeakRule};
+use sunpeak_bsdf::{Backlit, Bsdf, Mode, PeakRule};
 use sunpeak_core::{Frame, Rgb, Vec3, luminance, warp};
 use sunpeak_scene::Orientation;
 
@@ -38,9 +39,20 @@ impl Table {
     /// z the front normal, y up, x = y cross z, or its opposite in a mirrored instance. Where a curved surface's normal runs
     /// along the up vector, any frame serves.
     fn frame(&self, arrival: &Arrival) -> Frame {
-        let (normal, up) = (arrival.normal, arrival.orientation(&self.up));
+        self.frame_by(arrival.normal, arrival.orientation(&self.up))
+    }
+
+    fn frame_by(&self, normal: Vec3, up: Vec3) -> Frame {
         let frame = Frame::from_normal_up(normal, up).unwrap_or_else(|| Frame::from_normal(normal));
         if self.mirrored { Frame { x: -frame.x, ..frame } } else { frame }
+    }
+
+    /// The frame all over a flat surface; `None` if it varies.
+    pub fn level_frame(&self, normal: Vec3) -> Option<Frame> {
+        match &self.up {
+            Orientation::Fixed(up) => Some(self.frame_by(normal, *up)),
+            Orientation::Varying(_) => None,
+        }
     }
 
     /// Does it stand for geometry that is there too?
@@ -69,6 +81,12 @@ impl Table {
             return Rgb::ZERO;
         }
         self.bsdf.through(self.frame(arrival).to_local(-arrival.direction), self.rule) * arrival.tint
+    }
+
+    /// What the surface gives off, as rays meet it at its front or not, in the light of a far field behind it (world axes).
+    pub fn backlit(&self, normal: Vec3, at_front: bool, field: impl Fn(Vec3) -> Rgb) -> Option<Backlit> {
+        let frame = self.level_frame(normal)?;
+        self.bsdf.backlit(at_front, self.rule, |w_out| field(frame.to_world(w_out)))
     }
 
     pub fn scatter(&self, arrival: &Arrival, view: bool) -> Scattering<'_> {
@@ -166,6 +184,11 @@ impl TableLobes<'_> {
     pub fn offset(&self, direction: Vec3) -> Vec3 {
         let is_transmission = direction.dot(self.frame.z) * self.w_in.z < 0.0;
         if is_transmission { self.table.offset(self.frame.z) } else { Vec3::ZERO }
+    }
+
+    /// Radiance that the surface gives off in the light of a far field.
+    pub fn backlit(&self, backlight: &Backlight) -> Rgb {
+        backlight.radiance(self.w_in) * self.tint
     }
 
     pub fn has_source_rule(&self) -> bool {

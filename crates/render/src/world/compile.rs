@@ -3,7 +3,8 @@
 use super::{Facing, Object, World};
 use crate::WorldOptions;
 use crate::accel::{Accel, Geometry, Primitive};
-use crate::guide::Guide;
+use crate::backlight::{Backlights, is_window};
+use crate::guide::{Guide, ScatteredSun};
 use crate::light::{Distant, DistantSources, Lamp, LampShape, Lamps};
 use crate::material::{
     Alternate, Antimatter, Ashikhmin, Dielectric, Emitter, EmitterKind, Glass, Material, MaterialId, Mirror,
@@ -23,6 +24,9 @@ const MAX_MODIFIER_DEPTH: usize = 100;
 
 /// Triangles of a mesh that shadow rays look for one by one.
 const MAX_LAMPS_OF_MESH: usize = 64;
+
+/// Of more pieces of glass than this windows are not looked for.
+const MAX_PANES: usize = 64;
 
 /// Thickness up to this is none [m] (Radiance, `FTINY`).
 const NO_THICKNESS: f64 = 1e-6;
@@ -49,7 +53,10 @@ struct Compiler<'s> {
     lamps: Vec<Lamp>,
     mirrors: Vec<u32>,
     prisms: Vec<(u32, Vec3)>,
-    shades: Vec<Triangle>,
+    /// Pieces of shades, each with its object.
+    shades: Vec<(u32, Triangle)>,
+    /// Flat pieces of glass, likewise.
+    panes: Vec<(u32, Triangle)>,
     meshes: Vec<MeshSurface>,
     /// Of each object: where its modifier stands in the scene. Of surfaces at the same place the later is seen.
     ranks: Vec<u32>,
@@ -75,6 +82,7 @@ impl<'s> Compiler<'s> {
             mirrors: Vec::new(),
             prisms: Vec::new(),
             shades: Vec::new(),
+            panes: Vec::new(),
             meshes: Vec::new(),
             ranks: Vec::new(),
             surfaces: Vec::new(),
@@ -82,12 +90,12 @@ impl<'s> Compiler<'s> {
         }
     }
 
-    fn finish(self) -> Result<World> {
-        let distant = DistantSources::new(self.sources);
+    fn finish(mut self) -> Result<World> {
+        let distant = DistantSources::new(std::mem::take(&mut self.sources));
         let is_volume = |m: &Material| matches!(m, Material::Mist(_) | Material::Antimatter(_));
         let has_volumes = self.materials.iter().any(is_volume);
-        let suns = distant.suns().iter().map(|&sun| distant.get(sun).direction).collect();
-        Ok(World {
+        let suns = self.scattered_suns(&distant);
+        let mut world = World {
             accel: Accel::build(self.primitives, self.analytic)?,
             objects: self.objects,
             surfaces: self.surfaces,
@@ -98,10 +106,35 @@ impl<'s> Compiler<'s> {
             prisms: self.prisms,
             rule: self.options.peak,
             rays: Default::default(),
-            guide: Guide::new(self.shades, suns),
+            guide: None,
+            backlights: Default::default(),
             meshes: self.meshes,
             has_volumes,
-        })
+        };
+        world.backlights = Backlights::find(&world, &self.shades);
+        let shades = self.shades.iter().map(|&(_, triangle)| triangle);
+        world.guide = Guide::new(shades.chain(windows(&world, &self.panes)).collect(), suns);
+        Ok(world)
+    }
+
+    /// Each sun that shades of each table and orientation scatter.
+    fn scattered_suns(&self, distant: &DistantSources) -> Vec<ScatteredSun> {
+        let mut found: Vec<ScatteredSun> = Vec::new();
+        for &(object, _) in &self.shades {
+            let Object { material, facing: Facing::Flat(normal), .. } = self.objects[object as usize] else {
+                continue;
+            };
+            for id in self.seen_materials(material) {
+                let Material::Table(table) = &self.materials[id.0 as usize] else { continue };
+                let suns = distant.suns().iter().map(|&sun| distant.get(sun).direction);
+                for sun in suns.filter_map(|sun| ScatteredSun::new(table, normal, sun)) {
+                    if !found.iter().any(|known| known.is_like(&sun)) {
+                        found.push(sun);
+                    }
+                }
+            }
+        }
+        found
     }
 
     fn add(&mut self, surface: &'s Surface) -> Result<()> {
@@ -147,7 +180,10 @@ impl<'s> Compiler<'s> {
             Some(triangles) => {
                 self.add_lamp(object, material, LampShape::triangles(triangles.clone(), normal));
                 if self.is_any(material, Material::is_shade) {
-                    self.shades.extend(&triangles);
+                    self.shades.extend(triangles.iter().map(|&triangle| (object, triangle)));
+                }
+                if matches!(self.materials[material.0 as usize], Material::Glass(_)) {
+                    self.panes.extend(triangles.iter().map(|&triangle| (object, triangle)));
                 }
                 triangles.into_iter().for_each(|t| self.add_primitive(object, Geometry::Triangle(t)));
             }
@@ -184,7 +220,7 @@ impl<'s> Compiler<'s> {
                 self.add_lamp(object, material, LampShape::triangles(vec![triangle], normal));
             }
             if is_shade {
-                self.shades.push(triangle);
+                self.shades.push((object, triangle));
             }
             self.add_primitive(object, Geometry::Triangle(triangle));
         }
@@ -510,6 +546,19 @@ impl<'s> Compiler<'s> {
         self.bsdfs.insert(file, bsdf.clone());
         Ok(bsdf)
     }
+}
+
+/// Pieces of those panes that sky and ground come through into a room.
+fn windows(world: &World, panes: &[(u32, Triangle)]) -> Vec<Triangle> {
+    if panes.len() > MAX_PANES || !world.distant.has_dome() || world.has_volumes {
+        return Vec::new();
+    }
+    let objects = panes.chunk_by(|a, b| a.0 == b.0);
+    let pieces = objects.filter_map(|pieces| {
+        let triangles: Vec<Triangle> = pieces.iter().map(|&(_, triangle)| triangle).collect();
+        is_window(world, pieces[0].0, &triangles).then_some(triangles)
+    });
+    pieces.flatten().collect()
 }
 
 /// Some point of a flat surface.

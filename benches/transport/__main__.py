@@ -1,0 +1,257 @@
+"""CPU time of `rpict` and of ours to the same error, in rooms behind shades.
+
+usage, inside benches/: python -m transport [--only NAME ...] [--reference-error E] [--limit-s S] [--out DIR]
+
+Each room is seen by a 180-degree fisheye of 240 x 240 pixels. Errors are root mean squares over blocks of 3 degrees,
+relative to the picture's mean luminance, against a reference that our path tracer makes with other seeds; it says how
+far it has converged itself. Blocks within 3 degrees of a sun that the eye sees are left out: neither program's pixels
+hold it. `rpict` runs in one process with several qualities, with and without its ambient cache, two at a time; ours
+runs with doubling numbers of paths, loading and compiling counted. Where the room has an `aBSDF`, Radiance extracts
+its peak by its own rule, and its reference is made under that rule.
+"""
+
+import argparse
+import json
+import os
+import platform
+import subprocess
+import sys
+import tempfile
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pyradiance
+
+import sunpeak as sp
+
+from .rooms import BenchRoom, rooms
+
+Floats = npt.NDArray[np.float64]
+
+SIZE, BLOCKS = 240, 60
+RADIANCE = Path(pyradiance.__file__).parent
+COMMON = ("-ps", "1", "-pt", "0", "-t", "0")
+QUALITIES: dict[str, tuple[str, ...]] = {
+    "cache, low": ("-ab", "3", "-aa", ".2", "-ar", "64", "-ad", "512", "-as", "128", "-lw", "2e-3"),
+    "cache, middle": ("-ab", "5", "-aa", ".1", "-ar", "128", "-ad", "2048", "-as", "512", "-lw", "5e-5"),
+    "cache, high": ("-ab", "7", "-aa", ".07", "-ar", "256", "-ad", "8192", "-as", "2048", "-lw", "1e-5"),
+    "no cache, low": ("-ab", "5", "-aa", "0", "-as", "0", "-ad", "8", "-lr", "-20", "-lw", "1e-7", "-st", "0"),
+    "no cache, middle": ("-ab", "6", "-aa", "0", "-as", "0", "-ad", "32", "-lr", "-20", "-lw", "1e-7", "-st", "0"),
+    "no cache, high": ("-ab", "7", "-aa", "0", "-as", "0", "-ad", "128", "-lr", "-20", "-lw", "1e-7", "-st", "0"),
+}
+OUR_SAMPLES = (1, 2, 4, 8, 16, 32, 64)
+
+
+class Measured:
+    """A room on disk with its references."""
+
+    def __init__(self, room: BenchRoom, folder: Path, reference_error: float, limit_s: float) -> None:
+        """Write it and make the references."""
+        self.room, self.folder = room, folder
+        folder.mkdir(parents=True, exist_ok=True)
+        self.files = room.write(folder)
+        self.view = sp.View.parse(room.view)
+        self.mask = mask(self.view, room.sun)
+        cosine = self.view.rays(BLOCKS, BLOCKS).directions @ np.asarray(self.view.direction)
+        self.weights = np.nan_to_num(self.view.solid_angles(BLOCKS, BLOCKS) * cosine)
+        self.reference, self.reference_error = self.converged(room.peak, reference_error, limit_s)
+        if room.rad_peak == room.peak:
+            self.rad_reference, self.rad_reference_error = self.reference, self.reference_error
+        else:
+            self.rad_reference, self.rad_reference_error = self.converged(room.rad_peak, reference_error, limit_s)
+
+    def world(self, peak: str) -> sp.World:
+        """Load and compile."""
+        return sp.World.compile(sp.Scene.load(self.files), peak)  # type: ignore[arg-type]
+
+    def converged(self, peak: str, goal: float, limit_s: float) -> tuple[Floats, float]:
+        """Render with new seeds until the mean of all has the error, or the CPU time is spent; kept between calls."""
+        kept = self.folder / f"reference_{peak}.npz"
+        if kept.exists():
+            with np.load(kept) as file:
+                return file["mean"], float(file["error"])
+        world, passes = self.world(peak), list[Floats]()
+        start = time.process_time()
+        while True:
+            seed = 1000 + len(passes)
+            passes.append(sp.render(world, self.view, (SIZE, SIZE), samples=32, seed=seed).luminance())
+            if len(passes) < 4:
+                continue
+            mean = np.mean(passes, axis=0)
+            spread = np.var([blocks(p) for p in passes], axis=0, ddof=1) / len(passes)
+            error = float(np.sqrt(spread[self.mask].mean()) / blocks(mean)[self.mask].mean())
+            if error < goal or time.process_time() - start > limit_s:
+                np.savez(kept, mean=mean, error=error)
+                return mean, error
+
+    def octree(self) -> Path:
+        """Make the octree, once."""
+        octree = self.folder / "scene.oct"
+        if not octree.exists():
+            folder = self.room.files_in or self.folder
+            with octree.open("wb") as out:
+                environment = radiance_environment(self.folder)
+                subprocess.run(["oconv", *self.files], cwd=folder, env=environment, stdout=out, check=True)
+        return octree
+
+    def errors(self, luminance: Floats, reference: Floats) -> dict[str, float]:
+        """Errors of a picture's blocks, and of Ev without the blocks that are left out."""
+        ours, truth = blocks(luminance)[self.mask], blocks(reference)[self.mask]
+        difference = ours - truth
+        ev, true_ev = (float((blocks(p) * self.weights)[self.mask].sum()) for p in (luminance, reference))
+        return {
+            "ev": ev / true_ev - 1,
+            "rmse": float(np.sqrt(np.mean(difference**2)) / truth.mean()),
+            "bias": float(difference.mean() / truth.mean()),
+        }
+
+
+def blocks(luminance: Floats) -> Floats:
+    """Means over blocks of 3 degrees."""
+    edge = SIZE // BLOCKS
+    return luminance.reshape(BLOCKS, edge, BLOCKS, edge).mean(axis=(1, 3))
+
+
+def mask(view: sp.View, sun: tuple[float, float, float] | None) -> npt.NDArray[np.bool_]:
+    """Blocks inside the circle and away from the sun."""
+    at = (np.arange(BLOCKS) + 0.5) / BLOCKS * 2 - 1
+    x, y = np.meshgrid(at, -at)
+    inside = np.hypot(x, y) < 1 - 1.5 / BLOCKS
+    if sun is None:
+        return inside
+    directions = view.rays(BLOCKS, BLOCKS).directions
+    cosine = directions.reshape(BLOCKS, BLOCKS, 3) @ np.asarray(sun)
+    return inside & (cosine < np.cos(np.radians(4.5)))
+
+
+def radiance_environment(*folders: Path) -> dict[str, str]:
+    """Where Radiance finds its programs and its files."""
+    paths = [".", *map(str, folders), str(RADIANCE / "lib")]
+    return {**os.environ, "PATH": f"{RADIANCE / 'bin'}:{os.environ['PATH']}", "RAYPATH": ":".join(paths)}
+
+
+def run_rpict(measured: Measured, quality: str, limit_s: float) -> dict[str, Any]:
+    """Run `rpict` once: CPU time and errors."""
+    folder = measured.room.files_in or measured.folder
+    environment = radiance_environment(measured.folder)
+    octree, picture = measured.octree(), measured.folder / f"rpict {quality}.hdr"
+    command = [
+        "rpict",
+        *measured.room.view.split(),
+        "-x",
+        str(SIZE),
+        "-y",
+        str(SIZE),
+        *COMMON,
+        *QUALITIES[quality],
+        str(octree),
+    ]
+    with picture.open("wb") as out:
+        process = subprocess.Popen(command, cwd=folder, env=environment, stdout=out, stderr=subprocess.DEVNULL)
+        cpu_s = 0.0
+        while process.poll() is None:
+            time.sleep(0.05)
+            cpu_s = cpu_of(process.pid) or cpu_s
+            if cpu_s > limit_s:
+                process.kill()
+                process.wait()
+                return {"quality": quality, "cpu_s": cpu_s, "finished": False}
+    luminance = sp.Picture.load(picture).luminance()
+    return {"quality": quality, "cpu_s": cpu_s, "finished": True, **measured.errors(luminance, measured.rad_reference)}
+
+
+def cpu_of(pid: int) -> float | None:
+    """CPU time of a process so far [s]."""
+    try:
+        fields = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
+    except (OSError, IndexError):
+        return None
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def run_ours(measured: Measured, samples: int, seed: int) -> dict[str, Any]:
+    """Load, compile and render: CPU time and errors."""
+    start = time.process_time()
+    world = measured.world(measured.room.peak)
+    luminance = sp.render(world, measured.view, (SIZE, SIZE), samples=samples, seed=seed).luminance()
+    cpu_s = time.process_time() - start
+    return {"samples": samples, "cpu_s": cpu_s, **measured.errors(luminance, measured.reference)}
+
+
+def time_to(error: float, ours: list[dict[str, Any]]) -> float:
+    """CPU time at which ours has an error, between its runs; by the law of large numbers beyond them."""
+    errors, times = np.array([r["rmse"] for r in ours]), np.array([r["cpu_s"] for r in ours])
+    if error >= errors[0]:
+        return float(times[0])
+    if error <= errors[-1]:
+        return float(times[-1] * (errors[-1] / error) ** 2)
+    return float(np.exp(np.interp(-np.log(error), -np.log(errors), np.log(times))))
+
+
+def main() -> None:
+    """Measure, print, and keep the raw results."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", nargs="+", default=[], metavar="NAME", help="rooms whose names begin so")
+    parser.add_argument("--reference-error", type=float, default=0.005, help="of the reference [-]")
+    parser.add_argument("--limit-s", type=float, default=300.0, help="CPU time of one reference, and of one rpict [s]")
+    parser.add_argument("--work", type=Path, help="folder for rooms and references, kept (else a temporary one)")
+    parser.add_argument("--out", type=Path, help="folder for the raw results")
+    parser.add_argument("--ours-only", action="store_true", help="leave rpict out")
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as temporary:
+        work = options.work or Path(temporary)
+        results = []
+        for room in rooms():
+            if options.only and not any(room.name.startswith(name) for name in options.only):
+                continue
+            results.append(measure(room, work / room.name.replace(", ", "-").replace(" ", "-"), options))
+            if options.out:
+                options.out.mkdir(parents=True, exist_ok=True)
+                content = {"machine": f"{platform.machine()}, {os.cpu_count()} cores", "rooms": results}
+                (options.out / "transport.json").write_text(json.dumps(content, indent=1) + "\n")
+
+
+def described(run: dict[str, Any]) -> str:
+    """Time and errors on a line."""
+    return f"{run['cpu_s']:>8.2f} s {run['rmse']:>8.2%} bias {run['bias']:>+7.2%} Ev {run['ev']:>+7.2%}"
+
+
+def measure(room: BenchRoom, folder: Path, options: argparse.Namespace) -> dict[str, Any]:
+    """Measure one room."""
+    measured = Measured(room, folder, options.reference_error, options.limit_s)
+    errors = f"{measured.reference_error:.2%}, under Radiance's rule {measured.rad_reference_error:.2%}"
+    print(f"\n{room.name}: reference {errors}")
+    ours = [run_ours(measured, samples, 7) for samples in OUR_SAMPLES]
+    for run in ours:
+        print(f"  ours, {run['samples']:>3} paths       {described(run)}")
+    if options.ours_only:
+        return {"room": room.name, "ours": ours}
+    measured.octree()
+    with ThreadPoolExecutor(2) as two:
+        theirs = list(two.map(lambda quality: run_rpict(measured, quality, options.limit_s), QUALITIES))
+    for run in theirs:
+        if not run["finished"]:
+            print(f"  rpict, {run['quality']:<16} {run['cpu_s']:>8.1f} s, not finished")
+            continue
+        run["ours_cpu_s"] = time_to(run["rmse"], ours)
+        better = [other["cpu_s"] for other in theirs if other["finished"] and other["rmse"] <= run["rmse"]]
+        run["ratio"] = min(better) / run["ours_cpu_s"]
+        print(
+            f"  rpict, {run['quality']:<16} {described(run)}   ours {run['ours_cpu_s']:.2f} s, ratio {run['ratio']:.1f}"
+        )
+    sys.stdout.flush()
+    return {
+        "room": room.name,
+        "reference_error": measured.reference_error,
+        "rad_reference_error": measured.rad_reference_error,
+        "ours": ours,
+        "rpict": theirs,
+    }
+
+
+if __name__ == "__main__":
+    sys.exit(main())
