@@ -43,7 +43,7 @@ QUALITIES: dict[str, tuple[str, ...]] = {
     "no cache, middle": ("-ab", "6", "-aa", "0", "-as", "0", "-ad", "32", "-lr", "-20", "-lw", "1e-7", "-st", "0"),
     "no cache, high": ("-ab", "7", "-aa", "0", "-as", "0", "-ad", "128", "-lr", "-20", "-lw", "1e-7", "-st", "0"),
 }
-OUR_SAMPLES = (1, 2, 4, 8, 16, 32, 64)
+OUR_SAMPLES = (1, 2, 4, 8, 16, 32)
 
 
 class Measured:
