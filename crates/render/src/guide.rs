@@ -8,6 +8,7 @@
 
 use crate::material::Table;
 use crate::shapes::{Ray, Triangle};
+use std::f64::consts::PI;
 use std::sync::Arc;
 use sunpeak_bsdf::{Bsdf, Mode, PeakRule};
 use sunpeak_core::{Frame, Vec3};
@@ -16,6 +17,13 @@ use sunpeak_core::{Frame, Vec3};
 /// below 1/(1 - these) of what it would be without a guide.
 const TO_SHADES: f64 = 0.3;
 const AGAINST_SUNS: f64 = 0.2;
+
+/// Share of directions against a scattered sun that are drawn by the table. Seen from the room its cells lie elsewhere than seen
+/// from the sun, so that at the edge of a peak a table alone would find too little: the rest are drawn around the sun.
+const BY_TABLE: f64 = 0.6;
+
+/// Angle around the sun below which the density is level [deg]: half the cell of a tensor tree of 16384.
+const LEVEL_DEG: f64 = 0.5;
 
 /// With more triangles of shades than this, looking at each of them costs more than it brings.
 const MAX_TRIANGLES: usize = 32;
@@ -49,6 +57,8 @@ pub(crate) struct ScatteredSun {
     frame: Frame,
     /// Towards the sun, in the BSDF's frame.
     w_in: Vec3,
+    /// The same in world axes.
+    sun: Vec3,
 }
 
 impl ScatteredSun {
@@ -58,7 +68,7 @@ impl ScatteredSun {
         let w_in = frame.to_local(sun);
         let scatters =
             table.bsdf.hemispherical_smooth(w_in, Mode::Transmission, table.rule).max_element() > 0.0;
-        scatters.then(|| Self { bsdf: table.bsdf.clone(), rule: table.rule, frame, w_in })
+        scatters.then(|| Self { bsdf: table.bsdf.clone(), rule: table.rule, frame, w_in, sun })
     }
 
     /// Same shade and sun?
@@ -67,6 +77,10 @@ impl ScatteredSun {
     }
 
     fn sample(&self, u: [f64; 3]) -> Option<Vec3> {
+        if u[0] >= BY_TABLE {
+            return Some(around(self.sun, [u[1], u[2]]));
+        }
+        let u = [u[0] / BY_TABLE, u[1], u[2]];
         let sample = self.bsdf.sample_mode(self.w_in, Mode::Transmission, u, self.rule)?;
         Some(-self.frame.to_world(sample.w_out))
     }
@@ -74,7 +88,8 @@ impl ScatteredSun {
     fn pdf(&self, direction: Vec3) -> f64 {
         let w_out = self.frame.to_local(-direction);
         let is_behind = (w_out.z > 0.0) != (self.w_in.z > 0.0);
-        if is_behind { self.bsdf.pdf_mode(self.w_in, w_out, self.rule) } else { 0.0 }
+        let by_table = if is_behind { self.bsdf.pdf_mode(self.w_in, w_out, self.rule) } else { 0.0 };
+        BY_TABLE * by_table + (1.0 - BY_TABLE) * around_pdf(self.sun, direction)
     }
 }
 
@@ -169,6 +184,28 @@ impl Guide {
     }
 }
 
+/// 1 - cos of the angle within which the density is level.
+fn level() -> f64 {
+    2.0 * (LEVEL_DEG.to_radians() / 2.0).sin().powi(2)
+}
+
+/// A direction with density in proportion to 1/(h + level), h = 1 - cos(angle to the sun): about the same chance for each
+/// octave of the angle.
+fn around(sun: Vec3, [u, v]: [f64; 2]) -> Vec3 {
+    let level = level();
+    let h = level * ((2.0 + level) / level).powf(u) - level;
+    let sin = (h * (2.0 - h)).max(0.0).sqrt();
+    let (y, x) = (2.0 * PI * v).sin_cos();
+    Frame::from_normal(sun).to_world(Vec3::new(sin * x, sin * y, 1.0 - h))
+}
+
+/// Density [1/sr] of [`around`].
+fn around_pdf(sun: Vec3, direction: Vec3) -> f64 {
+    let level = level();
+    let h = 0.5 * (direction - sun).length_squared();
+    1.0 / (2.0 * PI * (h + level) * ((2.0 + level) / level).ln())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -176,6 +213,33 @@ mod tests {
 
     fn triangle(offset: Vec3) -> Triangle {
         Triangle([offset, offset + Vec3::new(2.0, 0.0, 0.0), offset + Vec3::new(0.5, 0.3, 1.5)])
+    }
+
+    /// Share of directions within an angle of the sun: the integral of the density over the cap, in closed form.
+    fn share_within(h: f64) -> f64 {
+        ((h + level()) / level()).ln() / ((2.0 + level()) / level()).ln()
+    }
+
+    #[test]
+    fn directions_around_the_sun_follow_their_density() {
+        let sun = Vec3::new(0.3, -0.8, 0.5).normalize();
+        let (mut random, n) = (Random(7), 100_000);
+        let directions: Vec<Vec3> = (0..n).map(|_| around(sun, [random.next(), random.next()])).collect();
+        for degrees in [0.1f64, 0.5, 2.0, 10.0, 45.0, 120.0, 180.0] {
+            let h = 2.0 * (degrees.to_radians() / 2.0).sin().powi(2);
+            let within = directions.iter().filter(|d| 1.0 - d.dot(sun) <= h + 1e-12).count();
+            let share = share_within(h);
+            let error = (share * (1.0 - share) / f64::from(n)).sqrt();
+            assert!((within as f64 / f64::from(n) - share).abs() <= 4.0 * error + 1e-9, "{degrees} degrees");
+            // The density is the derivative of the share by solid angle, 2 pi dh.
+            let step = 1e-4 * h;
+            let slope = (share_within(h + step) - share_within(h - step)) / (4.0 * PI * step);
+            let side = sun.any_orthonormal_vector();
+            let direction = sun * (1.0 - h) + side * (h * (2.0 - h)).max(0.0).sqrt();
+            assert!((around_pdf(sun, direction) / slope - 1.0).abs() < 1e-5, "{degrees} degrees");
+        }
+        let mean: Vec3 = directions.iter().map(|d| *d - sun * d.dot(sun)).sum::<Vec3>() / f64::from(n);
+        assert!(mean.length() < 0.01, "uneven in azimuth: {mean}");
     }
 
     #[test]
@@ -186,8 +250,8 @@ mod tests {
         for rule in [PeakRule::Off, PeakRule::Split] {
             let bsdf = Arc::new(fabric.tabulate(Basis::KlemsFull).expect("tabulates"));
             let frame = Frame::from_normal_up(Vec3::Y, Vec3::Z).expect("a frame");
-            let w_in = frame.to_local(Vec3::new(0.3, -0.8, 0.5).normalize());
-            let sun = ScatteredSun { bsdf, rule, frame, w_in };
+            let sun = Vec3::new(0.3, -0.8, 0.5).normalize();
+            let sun = ScatteredSun { bsdf, rule, frame, w_in: frame.to_local(sun), sun };
             chi_square_of_sampler("scattered sun", |v, u| sun.sample([v, u[0], u[1]]), |d| sun.pdf(d));
         }
     }
