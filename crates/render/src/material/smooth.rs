@@ -162,7 +162,9 @@ impl Smooth<'_> {
 
     /// Draw a direction; `None` as for [`Self::sample`].
     pub fn draw(&self, sampler: &mut Sampler) -> Option<SmoothSample> {
-        let (u, choice) = (sampler.next_2d(), sampler.next_1d());
+        // A sensor has one lobe.
+        let choice = if matches!(self, Self::Sensor(_)) { 0.0 } else { sampler.next_1d() };
+        let u = sampler.next_2d();
         self.sample(choice, u, sampler)
     }
 
