@@ -113,6 +113,6 @@ fn twenty_random_rooms_agree_with_plain_paths() {
         sum / count,
         gain / count
     );
-    // The mean of sixty deviations has an error of an eighth.
-    assert!((sum / count).abs() < 0.4, "all lean to one side: {}", sum / count);
+    // The sensors of a room share their random numbers: as good as one number a room, whose mean has an error of 1/sqrt(20).
+    assert!((sum / count).abs() < 3.0 / (ROOMS as f64).sqrt(), "all lean to one side: {}", sum / count);
 }
