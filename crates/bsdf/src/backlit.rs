@@ -25,7 +25,7 @@ const RINGS: usize = 64;
 const AZIMUTHS: usize = 128;
 const KEPT_AZIMUTHS: usize = 64;
 
-/// Parts a side of the whole square into which cells are cut for that.
+/// Parts a side of the whole square: no larger than one are the pieces of a cell that are counted into rings and azimuths.
 const PARTS: f64 = 256.0;
 
 /// Against the table's direction: one look a side of a bin for so many cells a side of the tree, and at most so many.
@@ -90,13 +90,6 @@ impl Backlit {
     }
 }
 
-/// Value of a cell in a column.
-fn value(oriented: &Oriented, residual: bool, column: usize, index: usize) -> Rgb {
-    let distribution = &oriented.distribution;
-    let surround = if residual { distribution.split().surround(column, index) } else { None };
-    surround.unwrap_or_else(|| distribution.at_index(index))
-}
-
 /// The light at points that stand for equal projected solid angles, and that angle [sr]; in the table's own points.
 fn points_of_light(oriented: &Oriented, light: impl Fn(DVec2) -> Rgb) -> Vec<Rgb> {
     let at = |i: usize| (i as f64 + 0.5) / POINTS as f64;
@@ -127,7 +120,7 @@ fn patches(oriented: &Oriented, residual: bool, light: impl Fn(DVec2) -> Rgb) ->
     let width = matrix.exiting.len();
     let of = |s: usize, l: usize| {
         let (column, patch) = if oriented.reversed { (l, s) } else { (s, l) };
-        value(oriented, residual, column, column * width + patch)
+        oriented.cell_value(column, column * width + patch, residual)
     };
     (0..seen.len()).map(|s| (0..lit.len()).map(|l| of(s, l) * flux[l]).sum()).collect()
 }
@@ -138,7 +131,9 @@ fn squares(oriented: &Oriented, residual: bool, side: usize, light: impl Fn(DVec
     if !oriented.reversed {
         let of = |column| {
             let cells = table.cells(columns, column).into_iter();
-            cells.map(|c| value(oriented, residual, column, c.index) * sums.within(c.square(), side)).sum()
+            cells
+                .map(|c| oriented.cell_value(column, c.index, residual) * sums.within(c.square(), side))
+                .sum()
         };
         return (0..columns.len()).map(of).collect();
     }
@@ -149,7 +144,7 @@ fn squares(oriented: &Oriented, residual: bool, side: usize, light: impl Fn(DVec
         let flux = sums.cell(column / side, column % side);
         for cell in table.cells(columns, column) {
             let Some([x0, y0, x1, y1]) = bounds(cell.square(), side) else { continue };
-            let add = value(oriented, residual, column, cell.index) * flux;
+            let add = oriented.cell_value(column, cell.index, residual) * flux;
             corners[x0 * edge + y0] += add;
             corners[x1 * edge + y0] -= add;
             corners[x0 * edge + y1] -= add;
@@ -219,8 +214,6 @@ impl RunningSums {
 /// For the middle of each ring and each kept azimuth of the incident point.
 fn polar(oriented: &Oriented, residual: bool, rings: usize, light: impl Fn(DVec2) -> Rgb) -> Vec<Rgb> {
     // Exiting points in rings of equal width, fine in the middle, where the horizon often is.
-    let point =
-        |ring: f64, azimuth: f64| DVec2::from_angle(azimuth * TAU / AZIMUTHS as f64) * (ring / RINGS as f64);
     // Twice around, so that a turned ring is one stretch.
     let mut lights = [const { Vec::new() }; 3];
     for ring in 0..RINGS {
@@ -267,7 +260,7 @@ fn flux(oriented: &Oriented, residual: bool, p_in: DVec2) -> Vec<Rgb> {
     let column = columns.index(p_in);
     let mut bins = vec![Rgb::ZERO; RINGS * AZIMUTHS];
     for cell in table.cells(columns, column) {
-        let value = value(oriented, residual, column, cell.index);
+        let value = oriented.cell_value(column, cell.index, residual);
         let size = cell.square().map_or(1.0, |square| f64::from(square.size));
         let parts = (size * PARTS).ceil() as usize;
         let share = cell.projected_solid_angle / (parts * parts) as f64;

@@ -49,6 +49,12 @@ impl Oriented {
         if residual { self.distribution.residual(a, b) } else { self.distribution.value(a, b) }
     }
 
+    /// Value or residual [1/sr] of a cell in a column of the table.
+    pub fn cell_value(&self, column: usize, index: usize, residual: bool) -> Rgb {
+        let surround = if residual { self.distribution.split().surround(column, index) } else { None };
+        surround.unwrap_or_else(|| self.distribution.at_index(index))
+    }
+
     /// Through transmittance [-] by the split.
     pub fn through(&self, p_in: DVec2) -> Rgb {
         let (a, _) = self.points(p_in, p_in);
@@ -66,9 +72,7 @@ struct Target {
 impl Target {
     /// The value of a cell in a column of the table [1/sr].
     fn value(&self, column: usize, index: usize) -> Rgb {
-        let d = &self.oriented.distribution;
-        let surround = if self.residual { d.split().surround(column, index) } else { None };
-        surround.unwrap_or_else(|| d.at_index(index))
+        self.oriented.cell_value(column, index, self.residual)
     }
 }
 
