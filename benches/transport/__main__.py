@@ -88,15 +88,13 @@ class Measured:
                 np.savez(kept, mean=mean, error=error)
                 return mean, error
 
-    def octree(self) -> Path:
-        """Make the octree, once."""
-        octree = self.folder / "scene.oct"
-        if not octree.exists():
-            folder = self.room.files_in or self.folder
-            with octree.open("wb") as out:
-                environment = radiance_environment(self.folder)
-                subprocess.run(["oconv", *self.files], cwd=folder, env=environment, stdout=out, check=True)
-        return octree
+    def theirs(self, quality: str, limit_s: float) -> dict[str, Any]:
+        """Run `rpict`: CPU time and errors."""
+        run = run_rpict(self.room, self.folder, quality, limit_s)
+        if not run["finished"]:
+            return run
+        luminance = sp.Picture.load(self.folder / f"rpict {quality}.hdr").luminance()
+        return {**run, **self.errors(luminance, self.rad_reference)}
 
     def errors(self, luminance: Floats, reference: Floats) -> dict[str, float]:
         """Errors of a picture's blocks, and of Ev without the blocks that are left out."""
@@ -128,20 +126,35 @@ def mask(view: sp.View, sun: tuple[float, float, float] | None) -> npt.NDArray[n
     return inside & (cosine < np.cos(np.radians(4.5)))
 
 
+def octree_of(room: BenchRoom, folder: Path) -> Path:
+    """Make the octree, once."""
+    octree = folder / "scene.oct"
+    if not octree.exists():
+        folder.mkdir(parents=True, exist_ok=True)
+        environment = radiance_environment(folder)
+        with octree.open("wb") as out:
+            place = room.files_in or folder
+            subprocess.run(["oconv", *room.write(folder)], cwd=place, env=environment, stdout=out, check=True)
+    return octree
+
+
 def radiance_environment(*folders: Path) -> dict[str, str]:
     """Where Radiance finds its programs and its files."""
     paths = [".", *map(str, folders), str(RADIANCE / "lib")]
     return {**os.environ, "PATH": f"{RADIANCE / 'bin'}:{os.environ['PATH']}", "RAYPATH": ":".join(paths)}
 
 
-def run_rpict(measured: Measured, quality: str, limit_s: float) -> dict[str, Any]:
-    """Run `rpict` once: CPU time and errors."""
-    folder = measured.room.files_in or measured.folder
-    environment = radiance_environment(measured.folder)
-    octree, picture = measured.octree(), measured.folder / f"rpict {quality}.hdr"
+def run_rpict(room: BenchRoom, folder: Path, quality: str, limit_s: float) -> dict[str, Any]:
+    """Run `rpict` once: CPU time, and whether it finished. Its picture is kept, and not made again."""
+    picture, kept = folder / f"rpict {quality}.hdr", folder / f"rpict {quality}.json"
+    if kept.exists():
+        run: dict[str, Any] = json.loads(kept.read_text())
+        if run["finished"] or run["cpu_s"] >= limit_s:
+            return run
+    octree, environment = octree_of(room, folder), radiance_environment(folder)
     command = [
         "rpict",
-        *measured.room.view.split(),
+        *room.view.split(),
         "-x",
         str(SIZE),
         "-y",
@@ -151,7 +164,8 @@ def run_rpict(measured: Measured, quality: str, limit_s: float) -> dict[str, Any
         str(octree),
     ]
     with picture.open("wb") as out:
-        process = subprocess.Popen(command, cwd=folder, env=environment, stdout=out, stderr=subprocess.DEVNULL)
+        place = room.files_in or folder
+        process = subprocess.Popen(command, cwd=place, env=environment, stdout=out, stderr=subprocess.DEVNULL)
         cpu_s = 0.0
         while process.poll() is None:
             time.sleep(0.05)
@@ -159,9 +173,9 @@ def run_rpict(measured: Measured, quality: str, limit_s: float) -> dict[str, Any
             if cpu_s > limit_s:
                 process.kill()
                 process.wait()
-                return {"quality": quality, "cpu_s": cpu_s, "finished": False}
-    luminance = sp.Picture.load(picture).luminance()
-    return {"quality": quality, "cpu_s": cpu_s, "finished": True, **measured.errors(luminance, measured.rad_reference)}
+    run = {"quality": quality, "cpu_s": cpu_s, "finished": process.returncode == 0}
+    kept.write_text(json.dumps(run) + "\n")
+    return run
 
 
 def cpu_of(pid: int) -> float | None:
@@ -201,6 +215,9 @@ def main() -> None:
     parser.add_argument("--work", type=Path, help="folder for rooms and references, kept (else a temporary one)")
     parser.add_argument("--out", type=Path, help="folder for the raw results")
     parser.add_argument("--ours-only", action="store_true", help="leave rpict out")
+    parser.add_argument(
+        "--rpict-only", action="store_true", help="only run rpict, one at a time, and keep its pictures"
+    )
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as temporary:
         work = options.work or Path(temporary)
@@ -208,7 +225,12 @@ def main() -> None:
         for room in rooms():
             if options.only and not any(room.name.startswith(name) for name in options.only):
                 continue
-            results.append(measure(room, work / room.name.replace(", ", "-").replace(" ", "-"), options))
+            folder = work / room.name.replace(", ", "-").replace(" ", "-")
+            if options.rpict_only:
+                for quality in QUALITIES:
+                    print(room.name, run_rpict(room, folder, quality, options.limit_s), flush=True)
+                continue
+            results.append(measure(room, folder, options))
             if options.out:
                 options.out.mkdir(parents=True, exist_ok=True)
                 content = {"machine": f"{platform.machine()}, {os.cpu_count()} cores", "rooms": results}
@@ -230,9 +252,9 @@ def measure(room: BenchRoom, folder: Path, options: argparse.Namespace) -> dict[
         print(f"  ours, {run['samples']:>3} paths       {described(run)}")
     if options.ours_only:
         return {"room": room.name, "ours": ours}
-    measured.octree()
+    octree_of(room, folder)
     with ThreadPoolExecutor(2) as two:
-        theirs = list(two.map(lambda quality: run_rpict(measured, quality, options.limit_s), QUALITIES))
+        theirs = list(two.map(lambda quality: measured.theirs(quality, options.limit_s), QUALITIES))
     for run in theirs:
         if not run["finished"]:
             print(f"  rpict, {run['quality']:<16} {run['cpu_s']:>8.1f} s, not finished")
