@@ -66,7 +66,8 @@ class Measured:
 
     def world(self, peak: str) -> sp.World:
         """Load and compile."""
-        return sp.World.compile(sp.Scene.load(self.files), peak)  # type: ignore[arg-type]
+        place = self.room.files_in or self.folder
+        return sp.World.compile(sp.Scene.load(self.files, search_path=[place]), peak)  # type: ignore[arg-type]
 
     def converged(self, peak: str, goal: float, limit_s: float) -> tuple[Floats, float]:
         """Render with new seeds until the mean of all has the error, or the CPU time is spent; kept between calls."""

@@ -91,6 +91,21 @@ class Picture:
         """Suns seen through peaks, through glass, in mirrors or directly."""
         return [ExactSource((r[0], r[1], r[2]), r[3], (r[4], r[5], r[6]), r[7]) for r in self._core.sources().tolist()]
 
+    @property
+    def error(self) -> float | None:
+        """What the renderer stated: the error of the luminance of blocks of 8 by 8 pixels (root mean square, over the
+        mean luminance of all) [-] is below this with 95 % confidence; `None` of other pictures, and of too few paths.
+        """
+        words = " ".join(line for line in self.header if line.startswith("SUNPEAK_RENDER=")).split()
+        stated = [word.removeprefix("error=") for word in words if word.startswith("error=")]
+        return float(stated[-1]) if stated else None
+
+    @property
+    def block_errors(self) -> Floats | None:
+        """Standard errors of the luminance of blocks of 8 by 8 pixels (rows, columns) [cd/m²], where known."""
+        found = self._core.block_errors()
+        return None if found is None else found[0]
+
     def __repr__(self) -> str:
         height, width = self.shape
         return f"<Picture {width} x {height}, view {self.view}>"

@@ -50,11 +50,12 @@ def render(
 ) -> Picture:
     """Render a picture of `size` (width, height) pixels.
 
-    It takes `samples` paths for each pixel (64 unless told otherwise), or as many as fit in `time` seconds, or as many
-    as bring the standard error below `error` [-]: the root mean square over blocks of 8 by 8 pixels of the error of
-    their luminance, over the mean luminance of all (0.01 is 1 %). `until` asks for a glare number instead: `"class"`
-    until the comfort class cannot change, `("dgp", 0.005)` or `("ev", 0.01)` until the 95 % interval of DGP, or that
-    of Ev over Ev, is no wider than that to each side. With several, whatever comes first ends it.
+    It takes `samples` paths for a pixel in the mean (64 unless told otherwise; noisy blocks of pixels get more, others
+    less), or as many as fit in `time` seconds, or as many as bring the error below `error` [-] with 95 % confidence:
+    the root mean square over blocks of 8 by 8 pixels of the error of their luminance, over the mean luminance of all
+    (0.01 is 1 %). The picture says what was reached (`Picture.error`). `until` asks for a glare number instead:
+    `"class"` until the comfort class cannot change, `("dgp", 0.005)` or `("ev", 0.01)` until the 95 % interval of DGP,
+    or that of Ev over Ev, is no wider than that to each side. With several, whatever comes first ends it.
 
     The same seed and number of samples give the same picture on any number of `threads` (None: all cores).
     `max_bounces` limits diffuse bounces, as Radiance's `-ab`; None is no limit. `ambient` (three channels
@@ -97,6 +98,7 @@ def trace(
     time: float | None = None,
     error: float | None = None,
     error_of_each: bool = False,
+    with_errors: bool = False,
     seed: int = 0,
     threads: int | None = None,
     max_bounces: int | None = None,
@@ -107,7 +109,9 @@ def trace(
 
     `origins` (n, 3) are points [m]; `directions` (n, 3) are where the rays go, or the normals of the sensors; their
     length does not count. `error` is relative to the mean of all; with `error_of_each` that of each ray is relative to
-    its own, so that a dark sensor counts as much as a bright one. The other arguments are those of `render`.
+    its own, so that a dark sensor counts as much as a bright one. `with_errors` gives a fourth column: the standard
+    error of the luminous mean of the three, in their unit; NaN after fewer than 16 paths. The other arguments are those
+    of `render`.
     179 (0.265 R + 0.670 G + 0.065 B) gives luminance [cd/m²] or illuminance [lx].
     """
     points, towards = rows(origins), normalized(rows(directions))
@@ -115,7 +119,7 @@ def trace(
         raise _core.InputError(f"{len(points)} origins and {len(towards)} directions; expected as many of both")
     world = compiled(scene, peak)
     with reporting(progress, "tracing") as callback:
-        return _core.trace(
+        values, errors = _core.trace(
             world._core,
             points,
             towards,
@@ -130,6 +134,9 @@ def trace(
             error_of_each,
             callback,
         )
+    if not with_errors:
+        return values
+    return np.column_stack([values, np.full(len(values), np.nan) if errors is None else errors])
 
 
 def compiled(scene: Scene | World, peak: Peak) -> World:

@@ -86,6 +86,15 @@ impl PyPicture {
         self.0.header.clone()
     }
 
+    /// Standard errors of blocks [cd/m²] (rows, columns), and a block's edge [pixels].
+    fn block_errors<'py>(&self, py: Python<'py>) -> PyResult<Option<(Bound<'py, PyArray2<f64>>, usize)>> {
+        let Some(errors) = &self.0.block_errors else { return Ok(None) };
+        let shape = (errors.luminance_cd_m2.len() / errors.columns.max(1), errors.columns);
+        let values = ndarray::Array2::from_shape_vec(shape, errors.luminance_cd_m2.clone())
+            .map_err(|error| InputError::new_err(error.to_string()))?;
+        Ok(Some((PyArray2::from_owned_array(py, values), errors.edge)))
+    }
+
     /// A row for each source: direction, solid angle, radiance, visible fraction (n, 8).
     fn sources<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         let sources = &self.0.exact_sources;

@@ -126,7 +126,7 @@ pub fn render(
     Ok(PyPicture(Arc::new(picture)))
 }
 
-/// Radiance along rays, or irradiance at sensors: three channels (n, 3).
+/// Radiance along rays, or irradiance at sensors: three channels (n, 3); and the standard errors of their luminous mean.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "keywords of the Python face")]
 pub fn trace<'py>(
@@ -144,7 +144,7 @@ pub fn trace<'py>(
     ambient: [f64; 3],
     error_of_each: bool,
     progress: Option<Py<PyAny>>,
-) -> PyResult<Rows<'py>> {
+) -> PyResult<(Rows<'py>, Option<Numbers<'py>>)> {
     let options = options(samples, time_s, error, seed, threads, max_bounces, ambient);
     let options = RenderOptions { error_of_each, ..options };
     let (points, towards) = (vectors(&origins, "origins")?, vectors(&directions, "directions")?);
@@ -152,9 +152,9 @@ pub fn trace<'py>(
         return Err(InputError::new_err("origins and directions: expected as many rows of both"));
     }
     let rays: Vec<_> = points.into_iter().zip(towards).collect();
-    let values = run_watched(py, progress.as_ref(), |control| {
+    let traced = run_watched(py, progress.as_ref(), |control| {
         let trace = if irradiance { trace_irradiance } else { trace_radiance };
         trace(&world.0, &rays, &options, control)
     })?;
-    Ok(rows(py, &values))
+    Ok((rows(py, &traced.values), traced.standard_errors.map(|errors| PyArray1::from_vec(py, errors))))
 }

@@ -4,6 +4,7 @@ use crate::exact_sun::ExactSuns;
 use crate::integrator::{Integrator, Limits};
 use crate::passes::{Draw, Means, Reports, estimate_until};
 use crate::shapes::Ray;
+use crate::stopping::Groups;
 use crate::{RenderOptions, World};
 use sunpeak_core::{Control, Error, LUMINOUS_EFFICACY, Result, Rgb};
 use sunpeak_scene::{BlockErrors, Camera, ExactSource, Picture, View, disc_coverage};
@@ -59,7 +60,7 @@ pub fn render_until(
         width * height,
         options,
         Reports { control, rays: &world.rays },
-        |pixel| film.block(pixel),
+        film.blocks(),
         |pixel, draw| film.sample(&integrator, pixel, draw),
         judge_means.as_ref().map(|judge| judge as _),
     )?;
@@ -82,6 +83,11 @@ impl Film {
     fn block(&self, pixel: usize) -> u32 {
         let (column, row) = (pixel % self.width, pixel / self.width);
         (row / BLOCK * self.width.div_ceil(BLOCK) + column / BLOCK) as u32
+    }
+
+    fn blocks(&self) -> Groups {
+        let blocks = (0..self.width * self.height).map(|pixel| self.block(pixel)).collect();
+        Groups::grid(blocks, self.width.div_ceil(BLOCK))
     }
 
     /// The picture that means make, exact sources put in.

@@ -11,7 +11,7 @@ use crate::shapes::{Ray, Triangle};
 use std::f64::consts::PI;
 use std::sync::Arc;
 use sunpeak_bsdf::{Bsdf, Mode, PeakRule};
-use sunpeak_core::{Frame, Vec3};
+use sunpeak_core::{Frame, Sampler, Vec3};
 
 /// Share of directions that go to the shades, and against the scattered suns. The rest, the surface's own, keeps every weight
 /// below 1/(1 - these) of what it would be without a guide.
@@ -24,6 +24,13 @@ const BY_TABLE: f64 = 0.6;
 
 /// Angle around the sun below which the density is level [deg]: half the cell of a tensor tree of 16384.
 const LEVEL_DEG: f64 = 0.5;
+
+/// Mean density of the directions into which a table scatters a sun, over that of an even hemisphere, below which they are not
+/// worth looking for apart. An even lobe has 4/3.
+const LEAST_CONCENTRATION: f64 = 4.0;
+
+/// Directions from which that is told.
+const CONCENTRATION_SAMPLES: u64 = 256;
 
 /// With more triangles of shades than this, looking at each of them costs more than it brings.
 const MAX_TRIANGLES: usize = 32;
@@ -62,13 +69,24 @@ pub(crate) struct ScatteredSun {
 }
 
 impl ScatteredSun {
-    /// `None` if the table scatters nothing of this sun to its other side. `sun` and `normal` are unit vectors in world axes.
+    /// `None` if the table scatters this sun nowhere in particular on its other side. `sun` and `normal` are unit vectors in world axes.
     pub fn new(table: &Table, normal: Vec3, sun: Vec3) -> Option<Self> {
         let frame = table.level_frame(normal)?;
         let w_in = frame.to_local(sun);
         let scatters =
             table.bsdf.hemispherical_smooth(w_in, Mode::Transmission, table.rule).max_element() > 0.0;
-        scatters.then(|| Self { bsdf: table.bsdf.clone(), rule: table.rule, frame, w_in, sun })
+        let found = Self { bsdf: table.bsdf.clone(), rule: table.rule, frame, w_in, sun };
+        (scatters && found.concentration() > LEAST_CONCENTRATION).then_some(found)
+    }
+
+    /// Mean density of the directions that the table draws, over that of an even hemisphere.
+    fn concentration(&self) -> f64 {
+        let density = |i: u64| {
+            let u = Sampler::new(0, 0, i).next_3d();
+            let drawn = self.bsdf.sample_mode(self.w_in, Mode::Transmission, u, self.rule);
+            drawn.map_or(0.0, |sample| self.bsdf.pdf_mode(self.w_in, sample.w_out, self.rule))
+        };
+        2.0 * PI * (0..CONCENTRATION_SAMPLES).map(density).sum::<f64>() / CONCENTRATION_SAMPLES as f64
     }
 
     /// Same shade and sun?
@@ -254,6 +272,25 @@ mod tests {
             let sun = ScatteredSun { bsdf, rule, frame, w_in: frame.to_local(sun), sun };
             chi_square_of_sampler("scattered sun", |v, u| sun.sample([v, u[0], u[1]]), |d| sun.pdf(d));
         }
+    }
+
+    #[test]
+    fn a_peak_is_worth_looking_for_and_an_even_lobe_is_not() {
+        use sunpeak_bsdf::synthetic::{Basis, Fabric};
+        let frame = Frame::from_normal_up(Vec3::Y, Vec3::Z).expect("a frame");
+        let sun = Vec3::new(0.3, -0.8, 0.5).normalize();
+        let of = |openness, lobe_share, rule| {
+            let fabric = Fabric { scattered: 0.05, openness, lobe_share, ..Fabric::default() };
+            let bsdf = Arc::new(fabric.tabulate(Basis::KlemsFull).expect("tabulates"));
+            ScatteredSun { bsdf, rule, frame, w_in: frame.to_local(sun), sun }.concentration()
+        };
+        assert!(
+            of(0.03, 0.5, PeakRule::Off) > LEAST_CONCENTRATION
+                && of(0.03, 0.5, PeakRule::Split) < LEAST_CONCENTRATION
+        );
+        // Without holes and lobe the fabric scatters evenly: 2 pi times the integral of (cos/pi)^2 over the hemisphere.
+        let even = of(0.0, 0.0, PeakRule::Off);
+        assert!((even / (4.0 / 3.0) - 1.0).abs() < 0.02, "{even}");
     }
 
     /// Solid angle of a triangle (Van Oosterom and Strackee 1983).

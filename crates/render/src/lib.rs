@@ -13,7 +13,7 @@
 //! let world = World::compile(&scene, &Default::default())?;
 //! let up = [(Vec3::ZERO, Vec3::Z)];
 //! let irradiance = trace_irradiance(&world, &up, &RenderOptions::default(), &Control::new())?;
-//! assert!((irradiance[0].x - std::f64::consts::PI).abs() < 1e-2);
+//! assert!((irradiance.values[0].x - std::f64::consts::PI).abs() < 1e-2);
 //! # Ok::<(), sunpeak_core::Error>(())
 //! ```
 //!
@@ -74,7 +74,7 @@ pub use goniophotometer::{
 };
 pub use options::{DEFAULT_MAX_DEPTH, DEFAULT_SAMPLES, RenderOptions, WorldOptions};
 pub use probe::{FirstDeltas, FirstSurface, first_deltas, first_surfaces};
-pub use sensor::{trace_irradiance, trace_radiance};
+pub use sensor::{Traced, trace_irradiance, trace_radiance};
 pub use world::World;
 
 /// A `source` narrower than this [deg] is a sun: it gets a shadow ray of its own, and is not found by chance behind

@@ -16,11 +16,11 @@ pub struct WorldOptions {
 /// How a picture, a ray or a sensor is computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderOptions {
-    /// Paths for each pixel, ray or sensor; powers of two converge best. With `time_s` the most that are traced; with neither,
+    /// Paths for each ray or sensor, for a pixel in the mean (noisy blocks of pixels get more); powers of two converge best. With `time_s` the most that are traced; with neither,
     /// [`DEFAULT_SAMPLES`].
     pub samples: Option<u32>,
-    /// Stop when the standard error is this small [-]: the root mean square over blocks of 8 by 8 pixels (over rays or sensors) of the
-    /// standard error of their luminance, relative to the mean luminance of all. Exact suns have none. With `samples` or
+    /// Stop when the error is this small [-] with 95 % confidence: the root mean square over blocks of 8 by 8 pixels (over rays or
+    /// sensors) of the error of their luminance, relative to the mean luminance of all. Exact suns have none. With `samples` or
     /// `time_s` whatever comes first.
     pub error: Option<f64>,
     /// Is `error` that of each ray or sensor relative to its own mean, so that a dark one counts as much as a bright one?

@@ -3,7 +3,7 @@
 //! Each item adds its own samples in order, so the result does not depend on threads.
 
 use crate::accel::rays_of_this_thread;
-use crate::stopping::ErrorEstimate;
+use crate::stopping::{ErrorEstimate, Groups};
 use crate::{DEFAULT_SAMPLES, RenderOptions};
 use rayon::prelude::*;
 use std::sync::Mutex;
@@ -23,8 +23,9 @@ const UNITS_PER_SECOND: f64 = 100.0;
 /// The means, and the number of samples behind each.
 pub(crate) struct Means {
     pub values: Vec<Rgb>,
+    /// In the mean over items, where some get more than others.
     pub samples: u32,
-    /// Relative standard error, where a goal was set for it (see [`RenderOptions::error`]).
+    /// 95 % bound of the relative error (see [`RenderOptions::error`]), once enough passes are done.
     pub error: Option<f64>,
     /// Standard error of the mean of each group, luminous, once enough passes are done.
     pub group_errors: Option<Vec<f64>>,
@@ -33,9 +34,9 @@ pub(crate) struct Means {
 /// Which of an item's samples is drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Draw {
-    /// Samples of the passes before.
+    /// Nominal samples of the passes before.
     pub done: u32,
-    /// Samples of this pass.
+    /// Samples of this item in this pass.
     pub pass: u32,
     /// Of them this one.
     pub index: u32,
@@ -66,23 +67,22 @@ pub(crate) struct Reports<'a> {
     pub rays: &'a AtomicU64,
 }
 
-/// Estimate `items` values; `sample(item, draw)` is one estimate of one of them. `group` says whose error counts together.
+/// Estimate `items` values, each by itself; `sample(item, draw)` is one estimate of one of them.
 pub(crate) fn estimate(
     items: usize,
     options: &RenderOptions,
     reports: Reports,
-    group: impl Fn(usize) -> u32,
     sample: impl Fn(usize, Draw) -> Rgb + Sync,
 ) -> Result<Means> {
-    estimate_until(items, options, reports, group, sample, None)
+    estimate_until(items, options, reports, Groups::each(items), sample, None)
 }
 
-/// The same, until a judge is content too.
+/// The same for items in groups whose error counts together, until a judge is content too.
 pub(crate) fn estimate_until(
     items: usize,
     options: &RenderOptions,
     reports: Reports,
-    group: impl Fn(usize) -> u32,
+    groups: Groups,
     sample: impl Fn(usize, Draw) -> Rgb + Sync,
     judge: Option<Judge>,
 ) -> Result<Means> {
@@ -92,15 +92,15 @@ pub(crate) fn estimate_until(
         .build()
         .map_err(|e| Error::value(format!("cannot start {:?} threads: {e}", options.threads)))?;
     goal.announce(reports.control);
-    let groups = (0..items).map(group).collect();
     let mut run = Run {
         goal: &goal,
         reports,
         sums: vec![Rgb::ZERO; items],
+        means: vec![Rgb::ZERO; items],
         done: 0,
         error: ErrorEstimate::new(groups),
     };
-    while let Some(pass) = goal.next_pass(run.done) {
+    while let Some(pass) = goal.next_pass(run.done, run.relative_error()) {
         pool.install(|| run.pass(pass, &sample))?;
         if run.is_good_enough(judge)? {
             break;
@@ -113,30 +113,38 @@ pub(crate) fn estimate_until(
 struct Run<'a> {
     goal: &'a Goal,
     reports: Reports<'a>,
+    /// Sums of the passes' means times their nominal samples.
     sums: Vec<Rgb>,
-    /// Samples behind each sum.
+    /// The same of the pass in work.
+    means: Vec<Rgb>,
+    /// Nominal samples behind each sum.
     done: u32,
     error: ErrorEstimate,
 }
 
 impl Run<'_> {
-    fn pass(&mut self, pass: u32, sample: &(impl Fn(usize, Draw) -> Rgb + Sync)) -> Result<()> {
+    fn pass(&mut self, nominal: u32, sample: &(impl Fn(usize, Draw) -> Rgb + Sync)) -> Result<()> {
         let (done, reports, goal) = (self.done, self.reports, self.goal);
-        self.sums.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, sums)| {
+        let (allotment, groups) = (self.error.allotment(nominal), self.error.groups());
+        self.means.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, means)| {
             if reports.control.is_stopped() {
                 return;
             }
             let before = rays_of_this_thread();
-            for (i, sum) in sums.iter_mut().enumerate() {
+            for (i, mean) in means.iter_mut().enumerate() {
+                let item = chunk * CHUNK + i;
+                let pass = allotment[groups.of(item)];
                 let draw = |index| Draw { done, pass, index };
-                *sum += (0..pass).map(|index| sample(chunk * CHUNK + i, draw(index))).sum::<Rgb>();
+                let sum: Rgb = (0..pass).map(|index| sample(item, draw(index))).sum();
+                *mean = sum * (f64::from(nominal) / f64::from(pass));
             }
             reports.rays.fetch_add(rays_of_this_thread() - before, Ordering::Relaxed);
-            goal.report(reports.control, sums.len() as u64 * u64::from(pass));
+            goal.report(reports.control, means.len() as u64 * u64::from(nominal));
         });
         reports.control.check()?;
-        self.done += pass;
-        self.error.add(&self.sums, self.done);
+        self.sums.iter_mut().zip(&self.means).for_each(|(sum, &mean)| *sum += mean);
+        self.done += nominal;
+        self.error.add(&self.means, nominal, &allotment);
         Ok(())
     }
 
@@ -156,7 +164,7 @@ impl Run<'_> {
         Means {
             values: self.sums.iter().map(|&sum| sum / f64::from(self.done)).collect(),
             samples: self.done,
-            error: self.goal.error.and_then(|_| self.relative_error()),
+            error: self.relative_error(),
             group_errors: self.error.standard_errors(),
         }
     }
@@ -221,9 +229,13 @@ impl Goal {
         }
     }
 
-    /// Samples of the next pass: as many as there are already, so that totals are powers of two while they are small.
-    fn next_pass(&self, done: u32) -> Option<u32> {
-        let wanted = done.clamp(1, LONGEST_PASS).min(self.samples - done);
+    /// Samples of the next pass: as many as there are already, so that totals are powers of two while they are small, and no more
+    /// than the error says are missing.
+    fn next_pass(&self, done: u32, error: Option<f64>) -> Option<u32> {
+        let over = self.error.zip(error).map_or(f64::INFINITY, |(goal, error)| (error / goal).powi(2) - 1.0);
+        let missing = (f64::from(done) * over).ceil().max(1.0);
+        let longest = missing.min(f64::from(LONGEST_PASS)) as u32;
+        let wanted = done.clamp(1, longest).min(self.samples - done);
         let Some(time) = self.time.filter(|_| done > 0) else { return (wanted > 0).then_some(wanted) };
         let elapsed = self.start.elapsed();
         let per_sample = elapsed / done;
@@ -250,13 +262,9 @@ mod tests {
         let one = |threads| {
             let options = RenderOptions { samples: Some(37), threads: Some(threads), ..Default::default() };
             let control = Control::new();
-            let means = estimate(
-                1000,
-                &options,
-                reports(&control),
-                |i| i as u32,
-                |i, draw| Rgb::splat(i as f64 + f64::from(draw.done + draw.index).sqrt()),
-            )
+            let means = estimate(1000, &options, reports(&control), |i, draw| {
+                Rgb::splat(i as f64 + f64::from(draw.done + draw.index).sqrt())
+            })
             .expect("runs");
             assert_eq!((means.samples, control.progress()), (37, (37_000, 37_000)));
             means.values
@@ -275,12 +283,12 @@ mod tests {
             std::thread::sleep(Duration::from_millis(1));
             Rgb::ONE
         };
-        let means = estimate(5, &options, reports(&Control::new()), |i| i as u32, slow).expect("runs");
+        let means = estimate(5, &options, reports(&Control::new()), slow).expect("runs");
         assert!(means.samples >= 8 && start.elapsed().as_secs_f64() < 0.4);
         let control = Control::new();
         control.stop();
         assert!(matches!(
-            estimate(5, &RenderOptions::default(), reports(&control), |i| i as u32, slow),
+            estimate(5, &RenderOptions::default(), reports(&control), slow),
             Err(Error::Interrupted)
         ));
     }
@@ -292,7 +300,7 @@ mod tests {
             RenderOptions { threads: Some(0), ..Default::default() },
             RenderOptions { time_s: Some(f64::NAN), ..Default::default() },
         ] {
-            assert!(estimate(1, &options, reports(&Control::new()), |i| i as u32, |_, _| Rgb::ONE).is_err());
+            assert!(estimate(1, &options, reports(&Control::new()), |_, _| Rgb::ONE).is_err());
         }
     }
 }

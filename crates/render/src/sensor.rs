@@ -1,10 +1,27 @@
 //! Single rays and irradiance sensors, as `rtrace` and `rtrace -I`.
 
 use crate::integrator::{Integrator, Limits};
-use crate::passes::{Draw, Reports, estimate};
+use crate::passes::{Draw, Means, Reports, estimate};
 use crate::shapes::Ray;
 use crate::{RenderOptions, World};
 use sunpeak_core::{Control, Error, Result, Rgb, Vec3};
+
+/// Radiance along rays, or irradiance at sensors.
+#[derive(Clone, Debug)]
+pub struct Traced {
+    /// Of each.
+    pub values: Vec<Rgb>,
+    /// Standard error of each one's luminous mean of channels; `None` after too few paths to tell.
+    pub standard_errors: Option<Vec<f64>>,
+}
+
+impl Traced {
+    /// Differences from a far field can leave a dark mean of few samples below zero.
+    fn of(means: Means) -> Self {
+        let values = means.values.into_iter().map(|value| value.max(Rgb::ZERO)).collect();
+        Self { values, standard_errors: means.group_errors }
+    }
+}
 
 /// Radiance [W sr⁻¹ m⁻²] along rays, each given by origin and direction (of any length).
 ///
@@ -15,7 +32,7 @@ pub fn trace_radiance(
     rays: &[(Vec3, Vec3)],
     options: &RenderOptions,
     control: &Control,
-) -> Result<Vec<Rgb>> {
+) -> Result<Traced> {
     let rays = checked(rays, "ray", "direction")?;
     let integrator = Integrator { world, limits: Limits::of(options), exact_suns: None };
     let sample = |item: usize, draw: Draw| {
@@ -24,9 +41,9 @@ pub fn trace_radiance(
         integrator.radiance(Ray::new(origin, direction), f64::INFINITY, &mut sampler)
     };
     let reports = Reports { control, rays: &world.rays };
-    let means = estimate(rays.len(), options, reports, |item| item as u32, sample)?;
+    let means = estimate(rays.len(), options, reports, sample)?;
     world.check_expressions()?;
-    Ok(not_negative(means.values))
+    Ok(Traced::of(means))
 }
 
 /// Irradiance [W m⁻²] at sensors, each given by a point and a normal (of any length).
@@ -38,7 +55,7 @@ pub fn trace_irradiance(
     sensors: &[(Vec3, Vec3)],
     options: &RenderOptions,
     control: &Control,
-) -> Result<Vec<Rgb>> {
+) -> Result<Traced> {
     let sensors = checked(sensors, "sensor", "normal")?;
     let integrator = Integrator { world, limits: Limits::of(options), exact_suns: None };
     let sample = |item: usize, draw: Draw| {
@@ -46,14 +63,9 @@ pub fn trace_irradiance(
         integrator.irradiance(point, normal, &mut draw.alone(options.seed, item as u64))
     };
     let reports = Reports { control, rays: &world.rays };
-    let means = estimate(sensors.len(), options, reports, |item| item as u32, sample)?;
+    let means = estimate(sensors.len(), options, reports, sample)?;
     world.check_expressions()?;
-    Ok(not_negative(means.values))
-}
-
-/// Differences from a far field can leave a dark mean of few samples below zero.
-fn not_negative(values: Vec<Rgb>) -> Vec<Rgb> {
-    values.into_iter().map(|value| value.max(Rgb::ZERO)).collect()
+    Ok(Traced::of(means))
 }
 
 /// Finite points and unit vectors.

@@ -236,6 +236,7 @@ fn threads_change_nothing() {
         let options = RenderOptions { threads: Some(threads), ..samples(16) };
         sunpeak_render::trace_irradiance(&world, &sensors, &options, &sunpeak_core::Control::new())
             .expect("traces")
+            .values
     };
     assert_eq!(run(1), run(4));
 }

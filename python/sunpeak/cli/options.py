@@ -28,7 +28,8 @@ Error = Annotated[
     typer.Option(
         parser=parse_percent,
         metavar="PCT",
-        help="Go on until the luminance of blocks (or sensors) has this standard error, in percent of the mean.",
+        help="Go on until the error (root mean square over rays or sensors) is below this with 95 % confidence, in "
+        "percent of the mean.",
         rich_help_panel=SAMPLING,
     ),
 ]
@@ -38,8 +39,9 @@ PictureGoal = Annotated[
         "--error",
         parser=parse_goal,
         metavar="PCT|class|dgp:…|ev:…",
-        help="Go on until blocks of pixels have this standard error in percent of the mean, until the comfort class "
-        "cannot change (class), or until the 95 % interval of DGP (dgp:0.005) or Ev (ev:1%) is so narrow.",
+        help="Go on until the error (root mean square over blocks of 8 by 8 pixels) is so small (95 % confidence), "
+        "in percent of the mean, until the comfort class cannot change (class), or until the 95 % interval of DGP "
+        "(dgp:0.005) or Ev (ev:1%) is so narrow.",
         rich_help_panel=SAMPLING,
     ),
 ]

@@ -8,7 +8,7 @@ import typer
 
 from sunpeak import InputError
 from sunpeak.cli import options
-from sunpeak.images import luminance_cd_m2
+from sunpeak.images import LUMINOUS_EFFICACY, luminance_cd_m2
 from sunpeak.rendering import trace
 from sunpeak.scattering import Floats
 
@@ -23,6 +23,9 @@ def command(
     ] = False,
     photometric: Annotated[
         bool, typer.Option("--photometric", "-p", help="One number a line: luminance, cd/m², or illuminance, lx.")
+    ] = False,
+    errors: Annotated[
+        bool, typer.Option("--errors", help="One more number a line: its standard error, in the unit of the others.")
     ] = False,
     peak: options.PeakRule = "split",
     samples: options.Samples = None,
@@ -39,7 +42,9 @@ def command(
 
     Standard input has a line "x y z dx dy dz" for each; standard output a line of red, green and blue.
 
-    [dim]$[/dim] [cyan]sunpeak trace room.rad sky.rad -I -p < sensors.pts[/cyan]
+    With --errors a line ends with the standard error of its luminous mean (of lux or cd/m² with -p); nan for few paths.
+
+    [dim]$[/dim] [cyan]sunpeak trace room.rad sky.rad -I -p --errors < sensors.pts[/cyan]
     """
     scene = options.load_scene(scenes, search_path, allow_commands)
     lines = read_rays(sys.stdin.read().splitlines())
@@ -52,13 +57,16 @@ def command(
         samples=samples,
         time=time,
         error=error,
+        with_errors=errors,
         seed=seed,
         threads=threads,
         max_bounces=max_bounces,
         progress=not quiet,
     )
-    columns = luminance_cd_m2(values)[:, None] if photometric else values
-    np.savetxt(sys.stdout, columns, fmt="%.6e", delimiter="\t")
+    if photometric:
+        columns = [luminance_cd_m2(values[:, :3]), *(LUMINOUS_EFFICACY * values[:, 3:]).T]
+        values = np.column_stack(columns)
+    np.savetxt(sys.stdout, values, fmt="%.6e", delimiter="\t")
 
 
 def read_rays(lines: list[str]) -> Floats:

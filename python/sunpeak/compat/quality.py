@@ -1,9 +1,9 @@
 """Radiance's quality options as samples and a statistical error.
 
 `-ad N` is the number of directions in which Radiance looks for indirect light. Here it says how long: paths are traced
-until the standard error is `ERROR_AT_ONE / sqrt(N)` of the mean (each sensor's own, or that of a picture's blocks over
-the picture's), or up to a number of paths that grows with N. `-ab` limits the diffuse bounces and `-av` is what lies
-past them. Options of our own, with two dashes, overrule both.
+until the error is below `ERROR_AT_ONE / sqrt(N)` of the mean with 95 % confidence (each sensor's own, or that of a
+picture's blocks over the picture's), or up to a number of paths that grows with N. `-ab` limits the diffuse bounces and
+`-av` is what lies past them. Options of our own, with two dashes, overrule both.
 """
 
 import math
@@ -13,7 +13,7 @@ from sunpeak._core import InputError
 from sunpeak.compat.options import CommandLine
 
 ERROR_AT_ONE = 0.3
-"""Standard error [-] that a single direction would stand for: 1024 of them mean 0.9 %."""
+"""Error [-] that a single direction would stand for: 1024 of them mean 0.9 %."""
 LEAST_PATHS = 64
 PATHS_PER_DIRECTION = 16
 """Most paths of a sensor, for each of Radiance's directions; of a pixel one."""

@@ -62,7 +62,8 @@ class CompiledScene:
         if len(origins) == 0:
             return np.zeros((0, 3))
         q = quality
-        return _core.trace(
+        values, _ = _core.trace(
             self.world, np.ascontiguousarray(origins), np.ascontiguousarray(directions), irradiance, q.samples, q.time,
             q.error, q.seed, q.threads, q.max_bounces, q.ambient, q.error_of_each, None,
         )  # fmt: skip
+        return values

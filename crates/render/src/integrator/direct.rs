@@ -82,7 +82,7 @@ impl Integrator<'_> {
 
     fn received(&self, receiver: &Receiver, sample: &LightSample, target: &Target) -> Rgb {
         let value = receiver.smooth_value(sample);
-        if value.total() == Rgb::ZERO || sample.radiance == Rgb::ZERO {
+        if value.total() == Rgb::ZERO || sample.light.is_none() {
             return Rgb::ZERO;
         }
         if !receiver.arrival.agrees_on(sample.direction) {
@@ -90,8 +90,13 @@ impl Integrator<'_> {
         }
         let ray = Ray::new(receiver.origin(sample.direction), sample.direction);
         let transmitted = self.world.transmitted(&ray, target, receiver.inside);
-        let known = self.known_dome_light(receiver, sample, &value);
-        if transmitted.is_blocked() {
+        let is_known = receiver.backlight.is_some() && sample.is_dome;
+        if transmitted.is_blocked() && !is_known {
+            return Rgb::ZERO;
+        }
+        let radiance = self.world.distant.radiance(sample);
+        let known = self.known_dome_light(receiver, sample, radiance, &value);
+        if transmitted.is_blocked() || radiance == Rgb::ZERO {
             return -known;
         }
         let finds =
@@ -105,14 +110,19 @@ impl Integrator<'_> {
             (true, false) => 0.0,
         };
         let scattered = value.diffuse * diffuse_weight + value.glossy * weight;
-        scattered * sample.radiance * transmitted.share * (receiver.cosine(sample.direction) / sample.pdf)
-            - known
+        scattered * radiance * transmitted.share * (receiver.cosine(sample.direction) / sample.pdf) - known
     }
 
     /// What the sample would bring in the far field, which the shade's radiance holds already.
-    fn known_dome_light(&self, receiver: &Receiver, sample: &LightSample, value: &SmoothValue) -> Rgb {
+    fn known_dome_light(
+        &self,
+        receiver: &Receiver,
+        sample: &LightSample,
+        radiance: Rgb,
+        value: &SmoothValue,
+    ) -> Rgb {
         let Some(backlight) = receiver.backlight.filter(|_| sample.is_dome) else { return Rgb::ZERO };
-        let field = backlight.field(self.world, sample.direction, sample.radiance);
+        let field = backlight.field(self.world, sample.direction, radiance);
         if field == Rgb::ZERO {
             return field;
         }
@@ -154,7 +164,12 @@ impl Integrator<'_> {
         let to_sun = world.transmitted(&onwards, &Target::sun(sun, &sample), world.inside_at(&onwards));
         let reflectance = world.mirror_reflectance(&Hit { t: hit, object: mirror }, &ray);
         let factor = receiver.cosine(ray.direction) / sample.pdf;
-        value.total() * sample.radiance * to_mirror.share * reflectance * to_sun.share * factor
+        value.total()
+            * world.distant.radiance(&sample)
+            * to_mirror.share
+            * reflectance
+            * to_sun.share
+            * factor
     }
 
     /// Suns that prisms send in another direction: virtual sources too.
@@ -206,7 +221,7 @@ impl Integrator<'_> {
         let onwards = Ray::new(ray.at(hit), onwards);
         let to_sun = world.transmitted(&onwards, &Target::sun(sun, &sample), world.inside_at(&onwards));
         let factor = share * receiver.cosine(direction) / sample.pdf;
-        value.total() * sample.radiance * to_prism.share * to_sun.share * factor
+        value.total() * world.distant.radiance(&sample) * to_prism.share * to_sun.share * factor
     }
 
     /// What a path that meets nothing finds at infinity.

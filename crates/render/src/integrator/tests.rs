@@ -64,7 +64,7 @@ fn room(random: &mut Random, folder: &std::path::Path) -> (String, Arc<sunpeak_b
 fn estimate(world: &World, sensors: &[(Vec3, Vec3)], samples: u32, seed: u64) -> Vec<(f64, f64)> {
     let one = |run| {
         let options = RenderOptions { samples: Some(samples), seed: seed + run, ..Default::default() };
-        trace_irradiance(world, sensors, &options, &Control::new()).expect("traces")
+        trace_irradiance(world, sensors, &options, &Control::new()).expect("traces").values
     };
     let runs: Vec<_> = (0..RUNS).map(one).collect();
     let of = |i: usize| {

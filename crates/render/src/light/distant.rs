@@ -3,7 +3,7 @@
 //! Where sources overlap one of them is seen, as in Radiance: the first light source in the scene's order, else the first
 //! `illum`, else the first `glow`. A sun stands before the sky and does not add to it.
 
-use super::{LightSample, dome::Dome};
+use super::{Light, LightSample, dome::Dome};
 use crate::SMALL_SOURCE_DEG;
 use crate::material::{Emitter, EmitterKind};
 use sunpeak_core::{Frame, Rgb, Vec3, cone_solid_angle, warp};
@@ -151,12 +151,20 @@ impl DistantSources {
         is_useful.then(|| self.light_sample(index, direction, pdf))
     }
 
+    /// What the emitter of a sample sends here if nothing is in between.
+    pub fn radiance(&self, sample: &LightSample) -> Rgb {
+        match sample.light {
+            Light::Known(radiance) => radiance,
+            Light::OfSource(index) => self.sources[index].emitter.radiance(&at_infinity(sample.direction)),
+        }
+    }
+
     fn light_sample(&self, index: usize, direction: Vec3, pdf: f64) -> LightSample {
         let source = &self.sources[index];
         LightSample {
             direction,
             distance: f64::INFINITY,
-            radiance: source.emitter.radiance(&at_infinity(direction)),
+            light: Light::OfSource(index),
             pdf,
             solid_angle: source.solid_angle(),
             is_direct: source.emitter.is_direct(f64::INFINITY),
@@ -225,7 +233,7 @@ mod tests {
         let n = 1 << 14;
         let mean = (0..n)
             .filter_map(|i| all.sample_dome(sunpeak_core::Sampler::new(1, 0, i).next_2d()))
-            .map(|s| s.radiance * s.direction.z.max(0.0) / s.pdf / n as f64)
+            .map(|s| all.radiance(&s) * s.direction.z.max(0.0) / s.pdf / n as f64)
             .sum::<Rgb>();
         assert!((mean - expected).length() < 3e-3 * expected.length(), "{mean} {expected}");
     }

@@ -1,7 +1,7 @@
 //! Emitting surfaces in the room.
 
-use super::LightSample;
 use super::dome::{pick, running_sums};
+use super::{Light, LightSample};
 use crate::material::Emitter;
 use crate::shapes::{Cone, Ring, Sphere, Triangle};
 use std::f64::consts::PI;
@@ -180,7 +180,7 @@ impl Lamp {
         LightSample {
             direction,
             distance,
-            radiance: self.emitter.radiance(&ray) * self.emitter.falloff(distance),
+            light: Light::Known(self.emitter.radiance(&ray) * self.emitter.falloff(distance)),
             pdf,
             solid_angle: (1.0 / pdf).min(4.0 * PI),
             is_direct: self.emitter.is_direct(distance),
@@ -206,7 +206,11 @@ mod tests {
     fn irradiance(lamp: &Lamp, from: Vec3) -> f64 {
         let n = 1 << 14;
         let one = |i| lamp.sample(from, Sampler::new(4, 0, i).next_2d());
-        (0..n).filter_map(one).map(|s| s.radiance.x * s.direction.z.max(0.0) / s.pdf).sum::<f64>() / n as f64
+        let light = |s: LightSample| {
+            let Light::Known(radiance) = s.light else { panic!("a lamp is no source at infinity") };
+            radiance.x * s.direction.z.max(0.0) / s.pdf
+        };
+        (0..n).filter_map(one).map(light).sum::<f64>() / n as f64
     }
 
     #[test]

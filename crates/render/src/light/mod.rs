@@ -19,7 +19,7 @@ pub(crate) struct LightSample {
     /// Distance to the emitter [m], infinity for distant ones.
     pub distance: f64,
     /// What it sends here if nothing is in between.
-    pub radiance: Rgb,
+    pub light: Light,
     /// Density [1/sr].
     pub pdf: f64,
     /// Solid angle of the whole emitter from here [sr].
@@ -32,6 +32,22 @@ pub(crate) struct LightSample {
     pub object: Option<u32>,
     /// May an `illum` on the way take its place?
     pub is_hidden_by_illum: bool,
+}
+
+/// What an emitter sends, or where to ask for it: shadow rays that meet something need not know.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Light {
+    /// Radiance.
+    Known(Rgb),
+    /// Of a source at infinity: its index.
+    OfSource(usize),
+}
+
+impl Light {
+    /// Is it known to be nothing?
+    pub fn is_none(&self) -> bool {
+        matches!(self, Self::Known(radiance) if *radiance == Rgb::ZERO)
+    }
 }
 
 /// Weight of the strategy with density `this` when `other` could have found the same path (Veach 1997, power heuristic).

@@ -20,11 +20,11 @@ pub fn samples(count: u32) -> RenderOptions {
 }
 
 pub fn irradiance(world: &World, point: Vec3, normal: Vec3, options: &RenderOptions) -> Rgb {
-    trace_irradiance(world, &[(point, normal)], options, &Control::new()).expect("traces")[0]
+    trace_irradiance(world, &[(point, normal)], options, &Control::new()).expect("traces").values[0]
 }
 
 pub fn radiance(world: &World, origin: Vec3, direction: Vec3, options: &RenderOptions) -> Rgb {
-    trace_radiance(world, &[(origin, direction)], options, &Control::new()).expect("traces")[0]
+    trace_radiance(world, &[(origin, direction)], options, &Control::new()).expect("traces").values[0]
 }
 
 /// Relative difference of the first channel.
