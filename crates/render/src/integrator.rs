@@ -20,8 +20,9 @@ use path::{Departure, Path};
 use sunpeak_core::{Frame, Rgb, Sampler, Vec3, luminance};
 
 /// Russian roulette begins when a path carries less than this, and brings the paths that survive back to it. Higher, and paths
-/// that have come far are ended just before they meet the sky; lower, and they bounce on for nothing.
-const ROULETTE_BELOW: f64 = 0.05;
+/// that have come far are ended just before they meet the sky; lower, and they bounce on for nothing. (Time times variance in
+/// docs/light-transport.md.)
+const ROULETTE_BELOW: f64 = 0.02;
 
 /// Share of scattered paths that meet a shade before a far field and look for what differs from that.
 const CORRECTED: f64 = 0.3;

@@ -229,13 +229,13 @@ impl Goal {
         }
     }
 
-    /// Samples of the next pass: as many as there are already, so that totals are powers of two while they are small, and no more
-    /// than the error says are missing.
+    /// Samples of the next pass: a power of two of at most half of what there is, so that no pass rules the mean and its error can be
+    /// told, and no more than the error says are missing.
     fn next_pass(&self, done: u32, error: Option<f64>) -> Option<u32> {
         let over = self.error.zip(error).map_or(f64::INFINITY, |(goal, error)| (error / goal).powi(2) - 1.0);
         let missing = (f64::from(done) * over).ceil().max(1.0);
-        let longest = missing.min(f64::from(LONGEST_PASS)) as u32;
-        let wanted = done.clamp(1, longest).min(self.samples - done);
+        let most = (f64::from(done / 2).max(1.0)).min(missing).min(f64::from(LONGEST_PASS)) as u32;
+        let wanted = (1 << most.ilog2()).min(self.samples - done);
         let Some(time) = self.time.filter(|_| done > 0) else { return (wanted > 0).then_some(wanted) };
         let elapsed = self.start.elapsed();
         let per_sample = elapsed / done;
