@@ -164,6 +164,30 @@ class TestRender:
         np.testing.assert_array_equal(pictures[0], pictures[1])
         assert (pictures[0] != pictures[2]).any()
 
+    def test_sensors_know_their_errors(self) -> None:
+        """Two hundred equal sensors scatter as each of them states."""
+        world = sp.World.compile(sp.Scene.parse(SPHERE + LAMP))
+        points = np.zeros((200, 3))
+        found = sp.trace(world, points, points + [0, 0, -1.0], irradiance=True, samples=32, with_errors=True)
+        assert found.shape == (200, 4)
+        luminous = found[:, :3] @ LUMINANCE / 179
+        stated = np.sqrt(np.mean(found[:, 3] ** 2))
+        assert stated == pytest.approx(luminous.std(ddof=1), rel=0.2)
+        few = sp.trace(world, points[:1], [[0, 0, -1.0]], irradiance=True, samples=4, with_errors=True)
+        assert np.isnan(few[0, 3])
+
+    def test_a_picture_knows_its_error(self) -> None:
+        """Its blocks lie about the mean of many pictures as it states, and it ends when the goal is reached."""
+        world, view = sp.World.compile(sp.Scene.parse(SPHERE + LAMP)), sp.View.parse(FISHEYE)
+        pictures = [sp.render(world, view, (64, 64), error=0.03, seed=seed) for seed in range(12)]
+        errors = [picture.error for picture in pictures]
+        assert all(error is not None and error <= 0.03 for error in errors)
+        blocks = np.array([p.luminance().reshape(8, 8, 8, 8).mean(axis=(1, 3)) for p in pictures])
+        stated = np.array([picture.block_errors for picture in pictures])
+        assert stated.shape == blocks.shape
+        assert np.mean(stated**2) == pytest.approx(blocks.var(axis=0, ddof=1).mean(), rel=0.3)
+        assert sp.render(world, view, (64, 64), samples=2).error is None
+
     @pytest.mark.parametrize("wrong", [{"samples": 0}, {"time": -1.0}, {"time": float("nan")}])
     def test_wrong_options_are_refused(self, wrong) -> None:
         with pytest.raises((sp.InputError, OverflowError)):

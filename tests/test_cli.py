@@ -219,6 +219,9 @@ def test_trace_reads_rays_and_sensors(sunpeak: CommandLine, room: Path) -> None:
     np.testing.assert_allclose(values[0], values[1], rtol=0.05)
     lux = float(sunpeak("trace", room, "-I", "-p", "--samples", 256, data=sensors.splitlines()[0]).out)
     assert lux == pytest.approx(179 * values[0] @ [0.265, 0.67, 0.065], rel=1e-5)
+    stated = sunpeak("trace", room, "-I", "-p", "--errors", "--samples", 256, data=sensors.splitlines()[0]).out.split()
+    assert float(stated[0]) == lux
+    assert 0 < float(stated[1]) < 0.05 * lux
 
 
 @pytest.mark.parametrize("line", ["1 2 3 0 0", "1 2 3 0 0 x", "1 2 3 0 0 nan", "1 2 3 0 0 0"])

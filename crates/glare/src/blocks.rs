@@ -55,7 +55,8 @@ struct Block {
 
 /// Standard errors of background and sources, the latter in the order of their `pixels`; `None` if the picture does not know its own.
 ///
-/// A block's error is shared out in proportion to the light in it: noise stands where light is.
+/// A block's variance is shared out in proportion to the light in it: pixels are independent, noise stands where light is, and the shares
+/// sum to the whole.
 pub(crate) fn sampling_error(
     field: &Field,
     limits: &Limits,
@@ -69,7 +70,7 @@ pub(crate) fn sampling_error(
         let taken =
             shares.take(source, limits.is_peak(pixels), &blocks, flux_by_block(field, errors, pixels));
         let error = |(block, share): (usize, f64)| {
-            share * errors.luminance_cd_m2[block] * blocks[block].solid_angle_sr
+            share.sqrt() * errors.luminance_cd_m2[block] * blocks[block].solid_angle_sr
         };
         root_of_squares(taken.into_iter().map(error))
     };
@@ -77,7 +78,7 @@ pub(crate) fn sampling_error(
     let background = blocks.iter().zip(&shares.left).zip(&errors.luminance_cd_m2);
     Ok(Some(SamplingError {
         background_lux: root_of_squares(
-            background.map(|((block, left), error)| left * error * block.projected_sr),
+            background.map(|((block, left), error)| left.sqrt() * error * block.projected_sr),
         ),
         source_flux,
         edges: shares.edges(limits, |block, threshold| passing_variance(field, errors, block, threshold)),
@@ -153,17 +154,17 @@ fn flux_by_block(field: &Field, errors: &BlockErrors, pixels: &[FieldPixel]) -> 
 
 /// Variance of the solid angle of a block's pixels that pass the threshold [sr²].
 ///
-/// Pixels are independent, so the mean of a block is known better than they are; and noise stands where light is, so that the error of a
-/// pixel is in proportion to its luminance. A dim pixel beside a sun does not become a source by the sun's noise.
+/// Pixels are independent, so the mean of a block is known better than they are; and noise stands where light is, so that the variance of
+/// a pixel is in proportion to its luminance. A dim pixel beside a sun does not become a source by the sun's noise.
 fn passing_variance(field: &Field, errors: &BlockErrors, block: usize, threshold: f64) -> f64 {
     let indices: Vec<usize> = errors.pixels(block, field.width, field.height).collect();
-    let squares: f64 = indices.iter().map(|&index| field.luminance(index).powi(2)).sum();
-    let relative_error = errors.luminance_cd_m2[block] * indices.len() as f64 / squares.sqrt();
-    if relative_error.is_nan() || relative_error <= 0.0 {
+    let light: f64 = indices.iter().map(|&index| field.luminance(index)).sum();
+    let variance_by_light = (errors.luminance_cd_m2[block] * indices.len() as f64).powi(2) / light;
+    if variance_by_light.is_nan() || variance_by_light <= 0.0 {
         return 0.0;
     }
     let variance = |pixel: FieldPixel| {
-        let error = relative_error * pixel.luminance_cd_m2;
+        let error = (variance_by_light * pixel.luminance_cd_m2).sqrt();
         let passes = normal::cumulative((pixel.luminance_cd_m2 - threshold) / error);
         pixel.solid_angle_sr.powi(2) * passes * (1.0 - passes)
     };

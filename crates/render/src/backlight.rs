@@ -17,8 +17,9 @@ use sunpeak_core::{Frame, Rgb, Sampler, Vec3, luminance, warp};
 /// Ways that are probed from each side of a shade.
 const PROBES: u64 = 256;
 
-/// A side is lit by the far field if so large a share of it comes through, by light.
-const LEAST_SHARE: f64 = 0.3;
+/// A side is lit by the far field if so large a share of it comes through, by light. Of less, what differs from it is noisier than the
+/// light itself.
+const LEAST_SHARE: f64 = 0.6;
 
 /// Panes that a probe passes.
 const MAX_PANES: usize = 8;
