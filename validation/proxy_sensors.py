@@ -3,7 +3,8 @@
 usage: python validation/proxy_sensors.py
 
 The blind is that of `tutorial-room/blinds` in the collection of scenes, its table the one that Radiance finds for its
-slats. The room is black, so that only the window counts; slats as geometry need two bounces or more. All should agree.
+slats and the pane behind them. The room is black, so that only the window counts; slats as geometry need two bounces or
+more. All should agree.
 """
 
 import os
@@ -50,7 +51,7 @@ def main() -> None:
     radiance = Radiance(package / "bin", package / "lib")
     parts = [" ".join(words) for words in primitives((BLINDS / "blindsWithProxy.rad").read_text())]
     pane, slats, proxy = ([part for part in parts if name in part] for name in ("Glazing", "Blinds", "Poly"))
-    variants = {"slats": [*pane, *slats], "table": [*pane, TABLE], "proxy": [*pane, *slats, *proxy]}
+    variants = {"slats": [*pane, *slats], "table": [TABLE], "proxy": [*pane, *slats, *proxy]}
     with TemporaryDirectory() as temporary:
         folder = Path(temporary)
         os.chdir(folder)

@@ -40,14 +40,15 @@ def make_stand_ins(folder: Path, radiance: Radiance) -> None:
 
 
 def slats_table(blind: Path) -> bytes:
-    """The BSDF of a blind's slats, as Radiance finds it by rays: LBNL XML, Klems basis.
+    """The BSDF of a blind's slats and the pane behind them, as Radiance finds it by rays: LBNL XML, Klems basis.
 
-    The scene file has slats and a pane before y = 0; the slats are turned so that the room is at the front.
+    The scene file has both, the pane at y = 0; they are turned so that the room is at the front. With the pane, since a
+    proxy's rays start beyond it, and as in `blindsT3.xml` beside the scene file.
     """
-    slats = "\n".join(" ".join(p) for p in primitives(blind.read_text()) if not {"Glazing", "glass"} & set(p[:3]))
-    turned = pyradiance.Xform(slats.encode()).rotatex(-90).rotatey(180).translate(0, 0, -SLATS_DEPTH)()
-    # Ten of them, far from their ends.
-    box = pyradiance.genbsdf.SamplingBox(-4, -3, 1.3, 1.3 + 10 * SLATS_SPACING, -SLATS_DEPTH, 0)
+    window = "\n".join(" ".join(primitive) for primitive in primitives(blind.read_text()))
+    turned = pyradiance.Xform(window.encode()).rotatex(-90).rotatey(180).translate(0, 0, -SLATS_DEPTH)()
+    # Ten of them, far from their ends; the pane is within.
+    box = pyradiance.genbsdf.SamplingBox(-4, -3, 1.3, 1.3 + 10 * SLATS_SPACING, -SLATS_DEPTH - PANE_WITHIN, 0)
     table = pyradiance.genbsdf.generate_bsdf(turned, nsamp=600, dim=box, params=["-ab", "5", "-ad", "64"])
     xml: bytes = pyradiance.genbsdf.generate_xml(sol_results=table, vis_results=table)
     return xml
@@ -55,6 +56,9 @@ def slats_table(blind: Path) -> bytes:
 
 SLATS_DEPTH, SLATS_SPACING = 0.0487, 0.030099
 """Of the blind in `tutorial-room/blinds` [m]."""
+
+PANE_WITHIN = 1e-3
+"""How far behind the pane rays start [m]."""
 
 
 def primitives(text: str) -> Iterator[list[str]]:

@@ -79,6 +79,7 @@ BLINDS_VIEW = "-vf views/eastBlinds.vf"
 PRISM_VIEW = "-vts -vp -4.25514 3.89431 1.97742 -vd -0.700687 -1.28443 -0.21925 -vh 140 -vv 140"
 DISKS_VIEW = "-vta -vp -0.2 3.07 2.78 -vd -2.64 -0.48 -1.25 -vh 66.6667 -vv 37.5"
 MIST_VIEW = "-vp 0.1 3.2 2.8 -vd -2.7336 -0.482008 -1.02483 -vh 45 -vv 45"
+COMBINED_VIEW = "-vtv -vp 23.5757 8.58098 5.24274 -vd -12.2856 0.909548 0.48623 -vh 50 -vv 32"
 WGMD_VIEW = "-vp -2.60899 4.62728 2.52391 -vd -1.11057 -1.64932 -1.10768 -vh 46.6777 -vv 46.6777"
 
 MESH = (
@@ -132,6 +133,8 @@ CASES = [
     Case("tutorial_proxy", "tutorial-room", (*TUTORIAL, PROXY), BLINDS_VIEW, 2, CLEAR_SKY),
     # The same without the sun, which Radiance counts twice.
     Case("tutorial_proxy_sky", "tutorial-room", (*TUTORIAL, PROXY), BLINDS_VIEW, 2, CLEAR_SKY.replace(" -W", " -s -W")),
+    # All rooms in one; its parts name Radiance's generators and the files that are made here.
+    rif("combined", COMBINED_VIEW, "combined_scene.rad"),
     rif("dielectric", "inside.vf", *WALLS, "rect_opening.rad", "front_cap.rad", "vase.rad", "rect_fixture.rad",
         "sunset_sky.rad", "dielectric_pane.rad"),
     rif("glass", "inside.vf", *WALLS, "rect_opening.rad", "front_cap.rad", "torus.rad", "sunset_sky.rad",
@@ -161,10 +164,11 @@ CASES = [
     rif("tfunc", "inside.vf", *WALLS, "rect_opening.rad", "front_cap.rad", "ball_in_cube.rad", "sunset_sky.rad",
         "illum_tfunc.rad"),
     # The same by the sun alone: function materials of Radiance scatter the light of sources, not that of the sky.
+    # Without the water, through which rays find a sun by luck.
     Case(
         "tfunc_sun",
         "radiance-renders",
-        (*WALLS, "rect_opening.rad", "front_cap.rad", "ball_in_cube.rad", "illum_tfunc.rad"),
+        (*WALLS, "rect_opening.rad", "front_cap.rad", "illum_tfunc.rad"),
         "-vf inside.vf",
         1,
         "void light sol 0 0 3 2.5e4 2.5e4 2.5e4\nsol source bigsun 0 0 4 -0.9338 -0.35 0.001 1\n",

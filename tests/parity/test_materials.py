@@ -145,3 +145,35 @@ def test_thin_mist_in_a_spotlight(radiance: Radiance, tmp_path: Path) -> None:
     mine = ours(text, rays, 1 << 12)
     ratio = mine[seen].sum(axis=0) / theirs[seen].sum(axis=0)
     np.testing.assert_allclose(ratio, 1.0, atol=0.03)
+
+
+def test_a_lamp_behind_mist(radiance: Radiance, tmp_path: Path) -> None:
+    """What scatters, green and blue, takes nothing of Radiance's shadow rays, and all by Beer's law of its other rays.
+
+    So a `light` is brighter behind mist than the same lamp as a `glow` that only paths find; Sunpeak's are alike.
+    """
+    seen = {}
+    for lamp in ("light l 0 0 3 100 100 100", "glow l 0 0 4 100 100 100 0"):
+        text = (
+            f"void {lamp}\nl ring r 0 0 8 0 0 4 0 0 -1 0 2\nvoid mist fog 0 0 7 .2 .2 .2 0 .5 .9 .3\n"
+            "!genbox fog b 20 20 2 | xform -t -10 -10 1\n"
+        )
+        options = ("-I", "-ab", "1", "-ad", "30000", "-aa", "0", "-lw", "1e-8", "-dj", "0", "-ds", ".01")
+        sensor = np.array([[0, 0, 0, 0, 0, 1]], dtype=np.float64)
+        theirs = radiance.rtrace(radiance.octree(tmp_path / "s.oct", text=text), sensor, *options)[0]
+        scene = sp.Scene.parse(text)
+        sees = {"irradiance": True, "samples": 1 << 15, "max_bounces": None, "seed": 1}
+        seen[lamp.split()[0]] = theirs, sp.trace(scene, sensor[:, :3], sensor[:, 3:], **sees)[0]
+    (by_shadows, ours), (by_paths, same) = seen["light"], seen["glow"]
+    # The mean over the lamp of Beer's law; the disc fills a cone of 27 degrees.
+    cosine = np.cos(np.arctan(0.5 * np.sqrt(np.linspace(0, 1, 20001)[1:])))
+    weight = cosine**4
+    depths = 0.4 * np.array([[1], [0.5], [0.1]]) / cosine
+    absorbed = 100 * np.pi * np.sin(np.arctan(0.5)) ** 2 * np.average(np.exp(-depths), axis=1, weights=weight)
+    beer = absorbed[0]
+    np.testing.assert_allclose(by_paths, beer, rtol=0.01)
+    np.testing.assert_allclose(by_shadows, absorbed, rtol=0.03)
+    np.testing.assert_allclose(ours, same, rtol=0.02)
+    assert ours[0] == pytest.approx(beer, rel=5e-3)
+    assert np.all(ours[1:] > beer)
+    assert np.all(ours[1:] < absorbed[1:])

@@ -188,8 +188,10 @@ impl World {
             },
             Material::Dielectric(solid) => Pass::Refracted(solid),
             Material::Varying(varying) => self.pass_varying(varying, arrival, target),
+            // Sampled paths pass it as well where they come from the geometry's side.
             Material::Table(table) if table.is_proxy() => {
-                Pass::Straight(Rgb::ONE, table.rule == PeakRule::Split)
+                let finds = table.rule != PeakRule::Split || table.is_passed(arrival, false);
+                Pass::Straight(Rgb::ONE, !finds)
             }
             Material::Table(table) => Pass::Straight(table.straight(arrival, target.is_direct), true),
             material => Pass::Straight(material.straight(arrival, target.is_direct), false),

@@ -71,6 +71,15 @@ fn shadow_rays_see_the_geometry_and_nothing_counts_twice() {
 }
 
 #[test]
+fn the_sky_lights_the_geometry_once() {
+    // A grey sheet between the proxies, which both let pass: from above it gets all of the sky, and shows its reflectance.
+    let sheet = SHEET.replace("0 0 0 0 0\n", ".5 .5 .5 0 0\n").replace("0 0 -1 0 1000", "0 0 1 0 1000");
+    let world = world_with(diffuser(), PeakRule::Split, &format!("{UNIFORM_SKY}{sheet}{PROXIES}"));
+    let value = radiance(&world, Vec3::new(0.0, 0.0, 5.0), Vec3::new(0.2, 0.1, -1.0), &samples(1 << 12));
+    assert_close("sheet", value, 0.5, 0.01);
+}
+
+#[test]
 fn lamps_are_found_through_a_proxy() {
     // A small lamp above the upper proxy lights the diffuser: half of what a Lambertian sheet of transmittance 0.3 passes.
     let text = format!(
