@@ -12,6 +12,7 @@ import numpy.typing as npt
 from sunpeak import _core
 from sunpeak.bands import write_bands
 from sunpeak.panes import Pane
+from sunpeak.runs import UNWATCHED, Run
 from sunpeak.scattering import Bsdf, Floats, rows
 
 Band = Literal["visible", "solar"]
@@ -88,12 +89,15 @@ class System:
         w_in = np.stack([sine, np.zeros(steps), cosine], axis=-1)
         return Straight(*(np.atleast_1d(part.mean()) for part in self.straight(w_in, band)))
 
-    def bsdf(self, basis: str = "klems", band: Band = "visible", *, panes: Panes = "mean") -> Bsdf:
+    def bsdf(
+        self, basis: str = "klems", band: Band = "visible", *, panes: Panes = "mean", run: Run = UNWATCHED
+    ) -> Bsdf:
         """Tabulate one band; what goes straight through is kept exact beside the table, for `through` and `save_split`.
 
         Bases as for `Fabric.write`. The outside of the system is the file's front, so the back of the BSDF's frame.
         """
-        return Bsdf(self._core.tabulate(basis, band, panes == "middle"))
+        with run.watching(f"{band} band") as watch:
+            return Bsdf(self._core.tabulate(basis, band, panes == "middle", *watch))
 
     def write(
         self,
@@ -102,12 +106,14 @@ class System:
         *,
         split: str | PathLike[str] | None = None,
         panes: Panes = "mean",
+        run: Run = UNWATCHED,
     ) -> None:
         """Write an LBNL XML file, whole or not at all: visible, and solar if all layers have it.
 
         `split` names a folder for the visible band with its exact straight part (`Bsdf.load` reads it).
         """
-        solar = self.bsdf(basis, "solar", panes=panes) if self.has_solar else None
+        solar = self.bsdf(basis, "solar", panes=panes, run=run) if self.has_solar else None
         layers = "; ".join(layer.name for layer in self.layers)
         comments = f"Layers from outside to inside: {layers}. Panes in patches: {panes}."
-        write_bands(self.bsdf(basis, "visible", panes=panes), solar, path, split, comments)
+        visible = self.bsdf(basis, "visible", panes=panes, run=run)
+        write_bands(visible, solar, path, split, comments)

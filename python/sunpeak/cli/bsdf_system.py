@@ -8,6 +8,7 @@ import typer
 from sunpeak._core import InputError
 from sunpeak.cli.options import Quiet
 from sunpeak.cli.output import note
+from sunpeak.cli.run import Resume, running
 from sunpeak.panes import Pane
 from sunpeak.systems import Panes, Shade, System
 
@@ -35,6 +36,7 @@ def system(
         typer.Option(help="In Klems patches a pane's mean, or its value at the middle angle (as WINDOW has it)."),
     ] = "mean",
     name: Annotated[str | None, typer.Option(help="What the file calls it.", show_default="the layers' names")] = None,
+    resume: Resume = False,
     quiet: Quiet = False,
 ) -> None:
     """Make one BSDF of panes and shades, with all reflections between them.
@@ -44,7 +46,8 @@ def system(
     [dim]$[/dim] [cyan]sunpeak bsdf system glass:1.52,4 fabric --basis t3-4096 -o window.xml --split w[/cyan]
     """
     made = System([_layer(text) for text in layers if text != GAP], name)
-    made.write(output, basis, split=split, panes=panes)
+    with running(output, resume, quiet) as run:
+        made.write(output, basis, split=split, panes=panes, run=run)
     if not made.has_solar:
         note(f"{output}: the visible band alone; a layer's file has no solar values", quiet)
 
