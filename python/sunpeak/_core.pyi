@@ -103,6 +103,7 @@ class Generated:
     @property
     def totals(self) -> tuple[int, int, float]: ...
     def sides(self) -> list[tuple[str, tuple[float, float], dict[str, _Floats]]]: ...
+    def cell_errors(self) -> list[tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]] | None]: ...
 
 def generate_bsdf(
     world: World,
@@ -117,6 +118,7 @@ def generate_bsdf(
     tolerance: float,
     reciprocity: bool,
     colour: bool,
+    cell_errors: bool,
     seed: int,
     threads: int | None,
     state: str | PathLike[str] | None,
