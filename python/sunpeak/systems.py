@@ -22,6 +22,10 @@ Panes = Literal["mean", "middle"]
 """What stands for a pane in a patch of a Klems basis: its mean by flux, or its value at the middle angle (WINDOW)."""
 
 
+WINDOW_STEP_DEG = 10.0
+"""Steps of incidence in which WINDOW sums the hemisphere for panes."""
+
+
 @dataclass(frozen=True)
 class Shade:
     """What scatters: a fabric, a blind, a diffusing pane, by its BSDF."""
@@ -82,12 +86,23 @@ class System:
         """
         return Straight(*self._core.straight(rows(w_in), band).T)
 
-    def diffuse(self, band: Band = "visible", *, inside: bool = False, steps: int = 400) -> Straight:
-        """Of light from everywhere alike, what keeps its direction: the mean over the hemisphere by flux."""
-        sine = np.sqrt((np.arange(steps) + 0.5) / steps)
+    def diffuse(
+        self, band: Band = "visible", *, inside: bool = False, steps: int = 400, window: bool = False
+    ) -> Straight:
+        """Of light from everywhere alike, what keeps its direction: the mean over the hemisphere by flux.
+
+        `window` gives the number of WINDOW's reports instead: trapezoids of 10 degrees, which come out 0.5 to 0.7 % low
+        for the transmittance of panes (`validation/systems.md`).
+        """
+        if window:
+            theta = np.radians(np.arange(0.0, 90.0, WINDOW_STEP_DEG))
+            # The sum's ends, at 0 and 90 degrees, have no weight.
+            sine, weights = np.sin(theta), np.radians(WINDOW_STEP_DEG) * np.sin(2.0 * theta)
+        else:
+            sine, weights = np.sqrt((np.arange(steps) + 0.5) / steps), np.full(steps, 1.0 / steps)
         cosine = np.sqrt(1.0 - sine**2) * (-1.0 if inside else 1.0)
-        w_in = np.stack([sine, np.zeros(steps), cosine], axis=-1)
-        return Straight(*(np.atleast_1d(part.mean()) for part in self.straight(w_in, band)))
+        w_in = np.stack([sine, np.zeros_like(sine), cosine], axis=-1)
+        return Straight(*(np.atleast_1d(part @ weights) for part in self.straight(w_in, band)))
 
     def bsdf(
         self, basis: str = "klems", band: Band = "visible", *, panes: Panes = "mean", run: Run = UNWATCHED
