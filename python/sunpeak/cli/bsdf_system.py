@@ -21,8 +21,8 @@ def system(
         list[str],
         typer.Argument(
             metavar="LAYER…",
-            help="From outside to inside: an IGSDB JSON or Optics file, glass:INDEX,MM[,ABSORPTION/m], "
-            "pane:TAU,RHO_FRONT,RHO_BACK (visible) with [/TAU,RHO,RHO] (solar), a BSDF XML file or the "
+            help="From outside to inside: an IGSDB JSON or Optics file, glass:INDEX,MM or glass:INDEX,MM,ABSORPTION/m, "
+            "pane:TAU,RHO_FRONT,RHO_BACK (visible) with /TAU,RHO,RHO after it (solar), a BSDF XML file or the "
             "folder of a split. gap is allowed between them and means nothing; :flip at its end turns a layer.",
         ),
     ],
