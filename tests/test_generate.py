@@ -40,8 +40,8 @@ def test_what_goes_straight_is_the_closed_form(product: Slats | Sheet | Screen, 
     traced = sp.straight_transmittance(world, towards[lit][:50], box=product.box, periodic=True, samples=1 << 15)
     assert lit.sum() >= 50
     # Sixteen times fewer rays than in validation/generate.md.
-    assert traced.through == pytest.approx(truth[lit][:50], rel=0.01)
-    assert np.all(np.abs(traced.through - truth[lit][:50]) < 6 * traced.error + 1e-4)
+    assert traced.through == pytest.approx(truth[lit][:50], rel=2e-3)
+    assert np.all(np.abs(traced.through - truth[lit][:50]) < 6 * traced.error + 1e-6)
 
 
 def test_a_blind_becomes_a_file_with_an_exact_split(sunpeak: CommandLine, tmp_path: Path) -> None:
