@@ -39,6 +39,41 @@ def test_products_of_igsdb_are_read(tmp_path: Path, version: int) -> None:
     assert sp.Pane.load(path).curve == "coated"
 
 
+def walsh(n: float) -> float:
+    """Reflectance of a face of index n for diffuse light in closed form (Walsh 1926; Duntley 1942, equation 24)."""
+    square = n * n
+    return (
+        0.5
+        + (n - 1) * (3 * n + 1) / (6 * (n + 1) ** 2)
+        + square * (square - 1) ** 2 / (square + 1) ** 3 * np.log((n - 1) / (n + 1))
+        - 2 * n**3 * (square + 2 * n - 1) / ((square + 1) * (square**2 - 1))
+        + 8 * square**2 * (square**2 + 1) / ((square + 1) * (square**2 - 1) ** 2) * np.log(n)
+    )
+
+
+def test_hemispherical_values_of_a_clear_pane_are_fresnels() -> None:
+    n, weights, mu = 1.52, *gauss(200)
+    inner = np.sqrt(1 - (1 - mu**2) / n**2)
+    faces = np.array([((mu - n * inner) / (mu + n * inner)) ** 2, ((inner - n * mu) / (inner + n * mu)) ** 2])
+    # One face has a closed form: so the quadrature is right.
+    assert weights @ faces.mean(axis=0) == pytest.approx(walsh(n), rel=1e-6)
+    pane = sp.System([sp.Pane.from_index(n, 4)])
+    for inside in (False, True):
+        found = pane.diffuse(inside=inside)
+        # All orders of reflection between two faces that absorb nothing, for both polarisations.
+        assert found.transmittance == pytest.approx(weights @ ((1 - faces) / (1 + faces)).mean(axis=0), rel=5e-4)
+        assert found.reflectance == pytest.approx(weights @ (2 * faces / (1 + faces)).mean(axis=0), rel=5e-4)
+    low = pane.diffuse(window=True).transmittance[0] / pane.diffuse().transmittance[0] - 1
+    assert -0.008 < low < -0.004
+
+
+def gauss(points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Weights by flux and cosines of incidence over the hemisphere."""
+    nodes, weights = np.polynomial.legendre.leggauss(points)
+    cosines = (nodes + 1) / 2
+    return weights * cosines, cosines
+
+
 def test_files_of_optics_are_read(tmp_path: Path) -> None:
     path = tmp_path / "clear.dat"
     rows = "\n".join(" ".join(map(str, row)) for row in ROWS)

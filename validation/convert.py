@@ -67,10 +67,15 @@ def radiance(folder: Path, *command: object) -> tuple[bytes, float]:
 
 def bsdf2klems(folder: Path) -> list[Row]:
     """Trees to Klems, against bsdf2klems with more and more random pairs for each pair of patches."""
-    sp.Formula("phong", diffuse=0.2, specular=0.5, exponent=12).write(folder / "lobe.xml", "t4", 16)
+    lobe, blind = sp.Formula("phong", diffuse=0.2, specular=0.5, exponent=12), sp.Blind(tilt_deg=30.0)
+    for side in (16, 64):
+        lobe.write(folder / f"lobe{side}.xml", "t4", side)
+    blind.write(folder / "blind.xml", "t4-4096")
     files = [
-        ("lobe, t4 16 x 16", folder / "lobe.xml", (100,)),
+        ("lobe, t4 16 x 16", folder / "lobe16.xml", (100,)),
         ("louvre, t4 16 x 16", DATA / "louvre_t4-256.xml", (60, 240)),
+        ("lobe, t4 64 x 64", folder / "lobe64.xml", (400,)),
+        ("blind, t4 64 x 64", folder / "blind.xml", (1000,)),
     ]
     areas = klems_areas()
     weights = np.outer(areas, areas)

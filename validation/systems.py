@@ -71,7 +71,14 @@ def panes_alone(products: Path, names: list[str], band: Band) -> dict[str, Any]:
     ours = system.straight(sp.direction(THETA_DEG), band).transmittance
     in_tens = wincalc.by_ten_degrees(np.append(THETA_DEG, 90.0), np.append(ours, 0.0))
     row["diffuse T, in their steps of 10 degrees"] = worst(in_tens, first)
-    row["diffuse T, ours"] = worst(system.diffuse(band).transmittance, first)
+    row["diffuse T, ours over theirs"] = float(system.diffuse(band).transmittance[0] / first - 1.0)
+    cosines, weights = wincalc.fine_hemisphere(24)
+    fine = [wincalc.results(layers, band, theta) for theta in np.degrees(np.arccos(cosines))]
+    for side, inside in (("front", False), ("back", True)):
+        for kind in ("transmittance", "reflectance"):
+            theirs = [getattr(getattr(f, side), kind).direct_direct for f in fine]
+            ours = getattr(system.diffuse(band, inside=inside), kind)
+            row[f"diffuse {kind} {side}, theirs integrated finely"] = worst(ours, weights @ theirs)
     return row
 
 

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from sunpeak.panes import Pane
     from sunpeak.pictures import ExactSource, Picture
     from sunpeak.rendering import World, render, trace
+    from sunpeak.runs import Run
     from sunpeak.scattering import Bsdf, Evidence, Samples, direction, side_of_ray
     from sunpeak.scene_check import SceneCheck, check_scene
     from sunpeak.scenes import Rays, Scene, View
@@ -53,6 +54,7 @@ __all__ = [
     "Rays",
     "RollerBlind",
     "RulesName",
+    "Run",
     "Samples",
     "Scene",
     "SceneCheck",
@@ -106,6 +108,7 @@ _HOMES = {
     "World": "rendering",
     "render": "rendering",
     "trace": "rendering",
+    "Run": "runs",
     "Bsdf": "scattering",
     "Evidence": "scattering",
     "Samples": "scattering",

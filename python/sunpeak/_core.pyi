@@ -32,6 +32,10 @@ class Bsdf:
     def peak_evidence(self, w_in: _Floats) -> _Floats: ...
     def pdf(self, w_in: _Floats, w_out: _Floats, peak: str) -> _Floats: ...
 
+class Kept:
+    def __init__(self, path: str | PathLike[str] | None = None) -> None: ...
+    def save(self, path: str | PathLike[str]) -> bool: ...
+
 def synthetic_bsdf(
     kind: str,
     numbers: dict[str, float],
@@ -40,8 +44,16 @@ def synthetic_bsdf(
     value_noise: float,
     fwhm_deg: float,
     seed: int,
+    kept: Kept | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Bsdf: ...
-def exact_bsdf(kind: str, numbers: dict[str, float], basis: str) -> Bsdf: ...
+def exact_bsdf(
+    kind: str,
+    numbers: dict[str, float],
+    basis: str,
+    kept: Kept | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Bsdf: ...
 def synthetic_through(kind: str, numbers: dict[str, float], w_in: _Floats) -> _Floats: ...
 def instrument_seen(bsdf: Bsdf, front: bool) -> float | None: ...
 def bsdf_xml(
@@ -52,7 +64,13 @@ def bsdf_xml(
     thickness_m: float | None = None,
     comments: str | None = None,
 ) -> str: ...
-def model_bsdf(kind: str, numbers: dict[str, float], basis: str) -> Bsdf: ...
+def model_bsdf(
+    kind: str,
+    numbers: dict[str, float],
+    basis: str,
+    kept: Kept | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Bsdf: ...
 def model_value(kind: str, numbers_in: dict[str, float], to_light: _Floats, leaving: _Floats) -> _Floats: ...
 def load_solar(path: str | PathLike[str]) -> Bsdf: ...
 def convert_bsdf(
@@ -63,6 +81,8 @@ def convert_bsdf(
     swap_sides: bool,
     reciprocal: bool,
     keep_peak: bool,
+    kept: Kept | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Bsdf: ...
 def bsdf_report(bsdf: Bsdf) -> dict[str, Any]: ...
 def save_split(bsdf: Bsdf, folder: str | PathLike[str]) -> list[Path]: ...
@@ -83,6 +103,7 @@ class Generated:
     @property
     def totals(self) -> tuple[int, int, float]: ...
     def sides(self) -> list[tuple[str, tuple[float, float], dict[str, _Floats]]]: ...
+    def cell_errors(self) -> list[tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]] | None]: ...
 
 def generate_bsdf(
     world: World,
@@ -97,6 +118,7 @@ def generate_bsdf(
     tolerance: float,
     reciprocity: bool,
     colour: bool,
+    cell_errors: bool,
     seed: int,
     threads: int | None,
     state: str | PathLike[str] | None,
@@ -208,18 +230,15 @@ def glare_sources(picture: Picture, options: dict[str, Any]) -> npt.NDArray[np.u
 def position_indices(
     towards: _Floats, sight: tuple[float, float, float], up: tuple[float, float, float], below: str
 ) -> _Floats: ...
-def fabric_xml(
-    basis: str,
-    openness: float,
-    cutoff_deg: float,
-    exponent: float,
-    scattered: float,
-    lobe_share: float,
-    lobe_sigma: float,
-    reflectance: float,
-) -> str: ...
 def roller_blind(
-    basis: str, tau_nn: float, tau_nh: float, rho_front: float, rho_back: float, cutoff_deg: float | None
+    basis: str,
+    tau_nn: float,
+    tau_nh: float,
+    rho_front: float,
+    rho_back: float,
+    cutoff_deg: float | None,
+    kept: Kept | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Bsdf: ...
 def roller_blind_transmittance(
     tau_nn: float, tau_nh: float, rho_front: float, rho_back: float, cutoff_deg: float | None, incidence_rad: float
@@ -237,7 +256,14 @@ class System:
     def __init__(self, name: str, layers: list[Layer]) -> None: ...
     def lacks_solar(self) -> bool: ...
     def straight(self, w_in: _Floats, band: str) -> _Floats: ...
-    def tabulate(self, basis: str, band: str, middle: bool) -> Bsdf: ...
+    def tabulate(
+        self,
+        basis: str,
+        band: str,
+        middle: bool,
+        kept: Kept | None = None,
+        progress: Callable[[int, int], None] | None = None,
+    ) -> Bsdf: ...
 
 def slab_optics(index: float, pass_: float, cosine: float) -> tuple[float, float]: ...
 def visible_share() -> float: ...

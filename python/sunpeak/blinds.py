@@ -5,6 +5,7 @@ from os import PathLike
 
 from sunpeak import _core
 from sunpeak.files import write_text
+from sunpeak.runs import UNWATCHED, Run
 
 
 @dataclass(frozen=True)
@@ -22,10 +23,11 @@ class Blind:
     scattered: float = 0.2
     """Share of the light on the slats that comes out at the other side, diffuse [-]."""
 
-    def write(self, path: str | PathLike[str], basis: str = "klems") -> None:
+    def write(self, path: str | PathLike[str], basis: str = "klems", *, run: Run = UNWATCHED) -> None:
         """Tabulate by exact cell averages and write an LBNL XML file, whole or not at all.
 
         `basis` as for `Fabric.write`.
         """
-        bsdf = _core.synthetic_bsdf("blind", asdict(self), basis, None, 0.0, 0.0, 1)
+        with run.watching("averaging over cells") as watch:
+            bsdf = _core.synthetic_bsdf("blind", asdict(self), basis, None, 0.0, 0.0, 1, *watch)
         write_text(path, _core.bsdf_xml(bsdf))

@@ -1,12 +1,13 @@
 """Fabrics of our own making: formulas in, an LBNL XML file out. What a table should give back is known exactly."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from os import PathLike
 
 from sunpeak import _core
 from sunpeak.bands import write_bands
 from sunpeak.files import write_text
+from sunpeak.runs import UNWATCHED, Run
 from sunpeak.scattering import Bsdf
 
 
@@ -34,25 +35,15 @@ class Fabric:
         share = incidence_rad / math.radians(self.cut_off_deg)
         return self.openness * math.cos(math.pi / 2 * share) ** self.exponent if share < 1.0 else 0.0
 
-    def write(self, path: str | PathLike[str], basis: str = "klems") -> None:
+    def write(self, path: str | PathLike[str], basis: str = "klems", *, run: Run = UNWATCHED) -> None:
         """Tabulate by exact cell averages and write an LBNL XML file, whole or not at all.
 
         `basis` is `klems`, `klems-half`, `klems-quarter`, or an isotropic or anisotropic tensor tree by the number of
         its exiting cells: `t3-1024`, `t3-4096`, `t3-16384`, `t4-1024` …
         """
-        write_text(
-            path,
-            _core.fabric_xml(
-                basis,
-                self.openness,
-                self.cut_off_deg,
-                self.exponent,
-                self.scattered,
-                self.lobe_share,
-                self.lobe_sigma,
-                self.reflectance,
-            ),
-        )
+        with run.watching("averaging over cells") as watch:
+            bsdf = _core.synthetic_bsdf("fabric", asdict(self), basis, None, 0.0, 0.0, 1, *watch)
+        write_text(path, _core.bsdf_xml(bsdf))
 
 
 @dataclass(frozen=True)
@@ -93,12 +84,13 @@ class RollerBlind:
     def _at(self, incidence_rad: float) -> tuple[float, float, float]:
         return _core.roller_blind_transmittance(*self._numbers(), incidence_rad)
 
-    def bsdf(self, basis: str = "klems") -> Bsdf:
+    def bsdf(self, basis: str = "klems", *, run: Run = UNWATCHED) -> Bsdf:
         """Tabulate by exact cell averages and keep what goes straight as the model has it; bases as for `Fabric`.
 
         Raises `InputError` where the numbers contradict each other.
         """
-        return Bsdf(_core.roller_blind(basis, *self._numbers()))
+        with run.watching("averaging over cells") as watch:
+            return Bsdf(_core.roller_blind(basis, *self._numbers(), *watch))
 
     def write(
         self,
@@ -107,9 +99,11 @@ class RollerBlind:
         *,
         solar: "RollerBlind | None" = None,
         split: str | PathLike[str] | None = None,
+        run: Run = UNWATCHED,
     ) -> None:
         """Write an LBNL XML file of what `bsdf` gives, whole or not at all; with the `solar` values as a second band.
 
         `split` names a folder for the visible band with its exact straight part, which `Bsdf.load` reads.
         """
-        write_bands(self.bsdf(basis), None if solar is None else solar.bsdf(basis), path, split)
+        beside = None if solar is None else solar.bsdf(basis, run=run)
+        write_bands(self.bsdf(basis, run=run), beside, path, split)

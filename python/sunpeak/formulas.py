@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from sunpeak import _core
 from sunpeak.bases import basis_name
+from sunpeak.runs import UNWATCHED, Run
 from sunpeak.scattering import Bsdf, Floats, together
 
 ModelName = Literal["lambert", "phong", "ward", "wgmd", "cook-torrance", "ggx", "rough-dielectric", "glass", "mirror"]
@@ -61,9 +62,10 @@ class Formula:
         light, out = together(to_light, leaving)
         return _core.model_value(self.model, self.numbers, light, out)
 
-    def tabulate(self, basis: str = "klems", resolution: int | None = None) -> Bsdf:
+    def tabulate(self, basis: str = "klems", resolution: int | None = None, *, run: Run = UNWATCHED) -> Bsdf:
         """A table of means over cells, by integration; bases as in `Bsdf.convert`."""
-        return Bsdf(_core.model_bsdf(self.model, self.numbers, basis_name(basis, resolution)))
+        with run.watching("integrating") as watch:
+            return Bsdf(_core.model_bsdf(self.model, self.numbers, basis_name(basis, resolution), *watch))
 
     def write(self, path: str | PathLike[str], basis: str = "klems", resolution: int | None = None) -> None:
         """Tabulate and write an LBNL XML file, whole or not at all."""

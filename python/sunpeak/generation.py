@@ -3,13 +3,13 @@
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from sunpeak import _core
-from sunpeak.files import check_target, write_text
+from sunpeak.files import check_target, whole_file, write_text
 from sunpeak.progress import Callback
 from sunpeak.rendering import World, compiled, normalized, reporting
 from sunpeak.scattering import Bsdf, Floats, Peak, rows
@@ -17,6 +17,9 @@ from sunpeak.scenes import Scene
 
 SideName = Literal["front", "back"]
 """Where the light comes from: `front` runs along +z (outside to inside; genBSDF's forward), `back` along -z."""
+
+Errors = npt.NDArray[np.float32]
+"""Standard errors of cells, (columns, cells)."""
 
 Box = tuple[float, float, float, float, float, float]
 """xmin, xmax, ymin, ymax, zmin, zmax, as genBSDF's -dim."""
@@ -40,6 +43,10 @@ class GeneratedSide:
     transmission_cell_error: float
     """Root mean square standard error of the cells of the scattered transmission, over their root mean square [-]."""
     reflection_cell_error: float
+    transmission_errors: Errors | None
+    """If asked for: standard error of each cell [1/sr], (columns, cells), of scattered light, before cells merge."""
+    reflection_errors: Errors | None
+    """The same of the reflection."""
 
 
 class StraightTransmittance(NamedTuple):
@@ -57,7 +64,8 @@ class GeneratedBsdf:
         """Wrap the compiled tables; users call `generate_bsdf`."""
         self._core = core
         self._made_by = made_by
-        self.sides = [_side(name, errors, table) for name, errors, table in core.sides()]
+        tables = zip(core.sides(), core.cell_errors(), strict=True)
+        self.sides = [_side(*side, cells) for side, cells in tables]
         """The sides that were traced."""
         self.samples, self.rays, self.lost = core.totals
         self.box = core.corners
@@ -85,6 +93,26 @@ class GeneratedBsdf:
         """Write an LBNL XML file, whole or not at all."""
         write_text(path, self.xml())
 
+    def save_errors(self, path: str | PathLike[str]) -> None:
+        """Write the standard errors of all cells and of the hemispherical values as NumPy's .npz, whole or not at all.
+
+        `front_transmission`, `front_reflection`, `back_…` are [1/sr], (columns, cells) in the order of the basis, of
+        scattered light before cells come together; `…_hemispherical` and `front_through` are [-], (columns,).
+        """
+        arrays: dict[str, Any] = {}
+        for side in self.sides:
+            if side.transmission_errors is None or side.reflection_errors is None:
+                raise _core.InputError("errors of cells were not kept; expected generate_bsdf(…, cell_errors=True)")
+            arrays |= {
+                f"{side.side}_transmission": side.transmission_errors,
+                f"{side.side}_reflection": side.reflection_errors,
+                f"{side.side}_transmission_hemispherical": side.transmittance_error,
+                f"{side.side}_reflection_hemispherical": side.reflectance_error,
+                f"{side.side}_through": side.through_error,
+            }
+        with whole_file(path) as temporary, temporary.open("wb") as file:
+            np.savez_compressed(file, **arrays)
+
     def save_split(self, folder: str | PathLike[str]) -> list[Path]:
         """Write the exact split to a folder, as `Bsdf.save_split`."""
         return self.bsdf.save_split(folder)
@@ -102,6 +130,7 @@ def generate_bsdf(
     tolerance: float = 0.05,
     reciprocity: bool = True,
     colour: bool = False,
+    cell_errors: bool = False,
     peak: Peak = "split",
     name: str = "",
     manufacturer: str = "",
@@ -123,7 +152,8 @@ def generate_bsdf(
     standard errors is `error` of what it scatters. Cells of a tensor tree come together where they differ by no more
     than `tolerance` of their mean, or by no more than their errors explain. `reciprocity` averages values that
     Helmholtz's reciprocity makes equal; turn it off for materials that break it. Isotropic trees (`t3`) are the mean
-    over all azimuths. `colour` keeps three channels; otherwise all is luminous. Lights in the scene are black.
+    over all azimuths. `colour` keeps three channels; otherwise all is luminous. `cell_errors` keeps the standard error
+    of every cell (`GeneratedBsdf.save_errors`). Lights in the scene are black.
 
     With `state`, Ctrl-C keeps the finished columns in that file, and `resume` goes on from it; it is removed when all
     is done. The same seed gives the same tables on any number of `threads`.
@@ -148,6 +178,7 @@ def generate_bsdf(
             tolerance,
             reciprocity,
             colour,
+            cell_errors,
             seed,
             threads,
             state,
@@ -179,9 +210,20 @@ def straight_transmittance(
     return StraightTransmittance(means @ weights, errors @ weights)
 
 
-def _side(name: str, errors: tuple[float, float], table: dict[str, Floats]) -> GeneratedSide:
+def _side(
+    name: str, errors: tuple[float, float], table: dict[str, Floats], cells: tuple[Errors, Errors] | None
+) -> GeneratedSide:
     side: SideName = "front" if name == "front" else "back"
-    return GeneratedSide(side, **table, transmission_cell_error=errors[0], reflection_cell_error=errors[1])
+    columns = len(table["through"])
+    transmission, reflection = (None, None) if cells is None else (mode.reshape(columns, -1) for mode in cells)
+    return GeneratedSide(
+        side,
+        **table,
+        transmission_cell_error=errors[0],
+        reflection_cell_error=errors[1],
+        transmission_errors=transmission,
+        reflection_errors=reflection,
+    )
 
 
 def _told(side: GeneratedSide) -> list[str]:

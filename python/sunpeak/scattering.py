@@ -16,6 +16,7 @@ from sunpeak import _core
 from sunpeak.bases import basis_name
 from sunpeak.bsdf_report import BsdfReport, report_on
 from sunpeak.files import write_text
+from sunpeak.runs import UNWATCHED, Run
 
 Peak = Literal["split", "radiance", "paper", "off"]
 """Which part of a table goes straight through.
@@ -136,6 +137,7 @@ class Bsdf:
         swap_sides: bool = False,
         reciprocity: Literal["average"] | None = None,
         keep_peak: bool = False,
+        run: Run = UNWATCHED,
     ) -> "Bsdf":
         """Tabulate the same product otherwise; flux is kept, by the exact areas that old and new cells share.
 
@@ -146,13 +148,16 @@ class Bsdf:
         `flip` turns the product over about its up axis, `swap_sides` only exchanges the names of front and back,
         `rotate_deg` then turns it about its normal, counterclockwise seen from the front. `reciprocity="average"`
         replaces f(in, out) of one side and f(out, in) of the other by their mean. `keep_peak` puts the split's peak
-        where a delta lies in the new basis; without, cells hand over what they hold.
+        where a delta lies in the new basis; without, cells hand over what they hold. `run` shows how far it is, and
+        keeps finished columns.
         """
         if reciprocity not in (None, "average"):
             raise _core.InputError(f"reciprocity: {reciprocity!r}; expected 'average' or None")
         name = None if basis is None else basis_name(basis, resolution)
         averaged = reciprocity == "average"
-        return Bsdf(_core.convert_bsdf(self._core, name, rotate_deg, flip, swap_sides, averaged, keep_peak))
+        moves = (rotate_deg, flip, swap_sides, averaged, keep_peak)
+        with run.watching("converting") as watch:
+            return Bsdf(_core.convert_bsdf(self._core, name, *moves, *watch))
 
     def save(
         self,

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from sunpeak import _core
 from sunpeak.bands import write_bands
+from sunpeak.runs import UNWATCHED, Run
 from sunpeak.scattering import Bsdf, Floats, rows
 
 Pattern = Literal["square", "triangular"]
@@ -28,18 +29,24 @@ class _Sheet:
         """Through transmittance [-] for light from `w_in` (n, 3), in closed form."""
         return np.asarray(_core.synthetic_through(self._kind, self._numbers(), rows(w_in)))
 
-    def bsdf(self, basis: str = "klems") -> Bsdf:
+    def bsdf(self, basis: str = "klems", *, run: Run = UNWATCHED) -> Bsdf:
         """Tabulate by exact cell averages; what goes straight through is kept as its closed form has it."""
-        return Bsdf(_core.exact_bsdf(self._kind, self._numbers(), basis))
+        with run.watching("averaging over cells") as watch:
+            return Bsdf(_core.exact_bsdf(self._kind, self._numbers(), basis, *watch))
 
     def write(
-        self, path: str | PathLike[str], basis: str = "klems", *, split: str | PathLike[str] | None = None
+        self,
+        path: str | PathLike[str],
+        basis: str = "klems",
+        *,
+        split: str | PathLike[str] | None = None,
+        run: Run = UNWATCHED,
     ) -> None:
         """Write an LBNL XML file of what `bsdf` gives, whole or not at all; bases as for `Fabric.write`.
 
         `split` names a folder for the exact straight part beside the rest, which `Bsdf.load` reads.
         """
-        write_bands(self.bsdf(basis), None, path, split)
+        write_bands(self.bsdf(basis, run=run), None, path, split)
 
 
 @dataclass(frozen=True)

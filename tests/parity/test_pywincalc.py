@@ -49,6 +49,22 @@ def test_panes_agree_at_all_angles(panes: list[sp.Pane], band: Band) -> None:
     assert system.diffuse(band).transmittance == pytest.approx(theirs, rel=0.01)
 
 
+@pytest.mark.parametrize("band", ["visible", "solar"])
+def test_hemispherical_values_are_those_of_its_angles(band: Band) -> None:
+    """What pyWinCalc says at single angles, integrated finely; what it says of the hemisphere is a coarse sum."""
+    panes = [LOW_E, CLEAR]
+    layers = [wincalc.glass(UM, pane) for pane in panes]
+    cosines, weights = wincalc.fine_hemisphere(8)
+    found = [wincalc.results(layers, band, theta) for theta in np.degrees(np.arccos(cosines))]
+    system = sp.System(panes)
+    for side, inside in (("front", False), ("back", True)):
+        ours, theirs = system.diffuse(band, inside=inside), [getattr(f, side) for f in found]
+        assert ours.transmittance == pytest.approx(weights @ [t.transmittance.direct_direct for t in theirs], rel=1e-3)
+        assert ours.reflectance == pytest.approx(weights @ [t.reflectance.direct_direct for t in theirs], rel=5e-3)
+        window = system.diffuse(band, inside=inside, window=True).transmittance
+        assert window == pytest.approx(theirs[0].transmittance.diffuse_diffuse, rel=1e-3)
+
+
 GRAY = sp.Pane.from_values((0.8, 0.1, 0.12))
 OTHER = sp.Pane.from_values((0.6, 0.3, 0.2))
 

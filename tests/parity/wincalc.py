@@ -68,6 +68,13 @@ def matrix(side: Any, kind: str) -> npt.NDArray[np.float64]:
     return np.array(getattr(side, kind).matrix)
 
 
+def fine_hemisphere(points: int) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """Cosines of incidence and weights by flux of Gauss's rule over the hemisphere."""
+    nodes, weights = np.polynomial.legendre.leggauss(points)
+    cosines = (nodes + 1.0) / 2.0
+    return cosines, weights * cosines
+
+
 def by_ten_degrees(theta_deg: npt.NDArray[np.float64], values: npt.NDArray[np.float64]) -> float:
     """The hemisphere's mean as pyWinCalc takes it for panes: trapezoids of 10 degrees."""
     theta = np.radians(theta_deg)

@@ -1,6 +1,11 @@
 //! Numbers and texts as bytes, little-endian, with a check sum; what is read back is bounded by what is there.
 
-use std::io::{self, Read, Write};
+use std::{
+    fs::{self, File},
+    io::{self, BufWriter, Read, Write},
+    path::Path,
+};
+use sunpeak_core::{Error, Result};
 
 /// Bytes that are turned at a time.
 const CHUNK: usize = 1 << 16;
@@ -52,6 +57,11 @@ impl<W: Write> Encoder<W> {
             self.bytes(&chunk)?;
         }
         Ok(())
+    }
+
+    /// The sum of all so far.
+    pub fn sum(&self) -> [u8; HASH] {
+        *self.hasher.finalize().as_bytes()
     }
 
     /// The sum of all before ends the file.
@@ -135,6 +145,22 @@ impl<R: Read> Decoder<R> {
         let is_right = self.left == 0 && self.hasher.finalize() == sum;
         if is_right { Ok(()) } else { Err(damaged()) }
     }
+}
+
+/// Write a file whole or not at all: beside its place first, and then into it.
+///
+/// # Errors
+/// Of the file system; nothing is left behind then.
+pub fn replace_file(path: &Path, write: impl FnOnce(BufWriter<File>) -> io::Result<()>) -> Result<()> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let temporary = path.with_file_name(format!(".{name}.{}", std::process::id()));
+    let written = File::create(&temporary)
+        .and_then(|file| write(BufWriter::new(file)))
+        .and_then(|()| fs::rename(&temporary, path));
+    if written.is_err() {
+        let _ = fs::remove_file(&temporary);
+    }
+    written.map_err(|e| Error::io(path, e))
 }
 
 /// The file is not what was written.

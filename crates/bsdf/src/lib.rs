@@ -37,6 +37,7 @@ pub mod synthetic;
 pub mod system;
 pub mod table;
 pub mod tree;
+mod work;
 pub mod xml;
 mod xml_write;
 
@@ -52,4 +53,5 @@ pub use peak::{ColumnPeak, Instrument, PeakRule, Split};
 pub use picture_cells::{ExitCell, IncidentCell};
 pub use proposal::Oriented;
 pub use split_files::SplitFiles;
+pub use work::{Kept, Work};
 pub use xml_write::Label;

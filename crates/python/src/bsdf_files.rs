@@ -2,6 +2,7 @@
 
 use crate::bsdf::PyBsdf;
 use crate::error::OrRaise;
+use crate::kept::{PyKept, run_kept};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -32,6 +33,7 @@ pub fn load_solar(py: Python<'_>, path: PathBuf) -> PyResult<PyBsdf> {
 
 /// The same product in another basis, moved, reciprocal.
 #[pyfunction]
+#[pyo3(signature = (bsdf, basis, rotate_deg, flip, swap_sides, reciprocal, keep_peak, kept=None, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "keywords of the Python face")]
 pub fn convert_bsdf(
     py: Python<'_>,
@@ -42,8 +44,18 @@ pub fn convert_bsdf(
     swap_sides: bool,
     reciprocal: bool,
     keep_peak: bool,
+    kept: Option<PyRef<'_, PyKept>>,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<PyBsdf> {
     let basis = basis.map(str::parse).transpose().or_raise()?;
     let to = Conversion { basis, flip, swap_sides, rotate_deg, reciprocal, keep_peak };
-    Ok(PyBsdf(Arc::new(py.detach(|| bsdf.0.convert(&to)).or_raise()?)))
+    let old = &bsdf.0;
+    let new = run_kept(
+        py,
+        kept.as_deref(),
+        progress.as_ref(),
+        |sum| sum.text(&format!("{to:?}")).and_then(|()| old.sum_up(sum)),
+        |work| old.convert_watched(&to, work),
+    )?;
+    Ok(PyBsdf(Arc::new(new)))
 }

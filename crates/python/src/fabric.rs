@@ -1,29 +1,11 @@
-//! Fabrics of our own making.
+//! Fabrics from their datasheets.
 
 use crate::bsdf::PyBsdf;
 use crate::error::OrRaise;
+use crate::kept::{PyKept, run_kept};
 use pyo3::prelude::*;
 use std::sync::Arc;
-use sunpeak_bsdf::synthetic::{Basis, Fabric, RollerBlind};
-
-/// Tabulate a fabric from its formulas: `basis` is `klems`, `klems-half`, `klems-quarter`, `t3-N` or `t4-N`.
-#[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "keywords of the Python face")]
-pub fn fabric_xml(
-    py: Python<'_>,
-    basis: &str,
-    openness: f64,
-    cutoff_deg: f64,
-    exponent: f64,
-    scattered: f64,
-    lobe_share: f64,
-    lobe_sigma: f64,
-    reflectance: f64,
-) -> PyResult<String> {
-    let fabric = Fabric { openness, cutoff_deg, exponent, scattered, lobe_share, lobe_sigma, reflectance };
-    let basis: Basis = basis.parse().or_raise()?;
-    py.detach(|| Ok(fabric.tabulate(basis)?.to_xml())).or_raise()
-}
+use sunpeak_bsdf::synthetic::{Basis, RollerBlind};
 
 fn of_datasheet(
     tau_nn: f64,
@@ -44,6 +26,8 @@ fn of_datasheet(
 
 /// Tabulate a roller blind from its datasheet; its through part is kept as the model has it.
 #[pyfunction]
+#[pyo3(signature = (basis, tau_nn, tau_nh, rho_front, rho_back, cutoff_deg, kept=None, progress=None))]
+#[expect(clippy::too_many_arguments, reason = "keywords of the Python face")]
 pub fn roller_blind(
     py: Python<'_>,
     basis: &str,
@@ -52,10 +36,18 @@ pub fn roller_blind(
     rho_front: f64,
     rho_back: f64,
     cutoff_deg: Option<f64>,
+    kept: Option<PyRef<'_, PyKept>>,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<PyBsdf> {
     let blind = of_datasheet(tau_nn, tau_nh, rho_front, rho_back, cutoff_deg)?;
     let basis: Basis = basis.parse().or_raise()?;
-    let bsdf = py.detach(|| blind.tabulate_exact(basis)).or_raise()?;
+    let bsdf = run_kept(
+        py,
+        kept.as_deref(),
+        progress.as_ref(),
+        |sum| sum.text(&format!("{blind:?} {basis}")),
+        |work| blind.tabulate_exact(basis, work),
+    )?;
     Ok(PyBsdf(Arc::new(bsdf)))
 }
 

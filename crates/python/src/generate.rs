@@ -5,7 +5,7 @@ use crate::bsdf::PyBsdf;
 use crate::error::{InputError, OrRaise};
 use crate::render::PyWorld;
 use crate::watch::run_watched;
-use numpy::PyReadonlyArray2;
+use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
@@ -54,6 +54,15 @@ impl PyGenerated {
         (self.samples, self.rays, self.lost)
     }
 
+    /// Of each side, if asked for: the standard error of every cell [1/sr], column after column, transmission and reflection.
+    fn cell_errors<'py>(&self, py: Python<'py>) -> Vec<Option<CellErrors<'py>>> {
+        let arrays = |side: &GeneratedSide| {
+            let errors = side.cell_errors.as_ref()?;
+            Some([&errors[0], &errors[1]].map(|mode| PyArray1::from_slice(py, mode)))
+        };
+        self.sides.iter().map(arrays).collect()
+    }
+
     /// Of each side: its name, the errors of its cells, and columns of numbers.
     fn sides<'py>(&self, py: Python<'py>) -> PyResult<Vec<SideTable<'py>>> {
         self.sides
@@ -62,6 +71,9 @@ impl PyGenerated {
             .collect()
     }
 }
+
+/// Errors of all cells [1/sr] of transmission and reflection.
+type CellErrors<'py> = [Bound<'py, PyArray1<f32>>; 2];
 
 /// Name, errors of the cells, columns of numbers.
 type SideTable<'py> = (&'static str, [f64; 2], Bound<'py, PyDict>);
@@ -121,6 +133,7 @@ pub fn generate_bsdf(
     tolerance: f64,
     reciprocity: bool,
     colour: bool,
+    cell_errors: bool,
     seed: u64,
     threads: Option<usize>,
     state: Option<PathBuf>,
@@ -141,6 +154,7 @@ pub fn generate_bsdf(
         tolerance,
         reciprocity,
         colored: colour,
+        cell_errors,
         seed,
         threads,
         state,

@@ -10,6 +10,7 @@ mod fabric;
 mod generate;
 mod glare;
 mod goal;
+mod kept;
 mod model;
 mod picture;
 mod render;
@@ -38,11 +39,13 @@ mod _core {
     #[pymodule_export]
     use super::expressions::evaluate;
     #[pymodule_export]
-    use super::fabric::{fabric_xml, roller_blind, roller_blind_transmittance};
+    use super::fabric::{roller_blind, roller_blind_transmittance};
     #[pymodule_export]
     use super::generate::{PyGenerated, generate_bsdf, straight_transmittance};
     #[pymodule_export]
     use super::glare::{glare, glare_sources, position_indices};
+    #[pymodule_export]
+    use super::kept::PyKept;
     #[pymodule_export]
     use super::model::{model_bsdf, model_value};
     #[pymodule_export]

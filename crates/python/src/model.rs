@@ -3,16 +3,17 @@
 use crate::arrays::{Numbers, directions, numbers};
 use crate::bsdf::PyBsdf;
 use crate::error::{InputError, OrRaise};
+use crate::kept::{PyKept, run_kept};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use sunpeak_bsdf::{
     model::{CookTorrance, Ggx, Glass, Lambert, Mirror, Model, Phong, Ward, tabulate},
     synthetic::Basis,
 };
 
-type Numbered = HashMap<String, f64>;
+type Numbered = BTreeMap<String, f64>;
 
 /// A model by its name and numbers; the Python face knows the names, and gives all of them.
 fn model(kind: &str, given: &Numbered) -> PyResult<Box<dyn Model>> {
@@ -74,10 +75,24 @@ fn model(kind: &str, given: &Numbered) -> PyResult<Box<dyn Model>> {
 
 /// A table of a model.
 #[pyfunction]
-pub fn model_bsdf(py: Python<'_>, kind: &str, numbers: Numbered, basis: &str) -> PyResult<PyBsdf> {
+#[pyo3(signature = (kind, numbers, basis, kept=None, progress=None))]
+pub fn model_bsdf(
+    py: Python<'_>,
+    kind: &str,
+    numbers: Numbered,
+    basis: &str,
+    kept: Option<PyRef<'_, PyKept>>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<PyBsdf> {
     let model = model(kind, &numbers)?;
     let basis: Basis = basis.parse().or_raise()?;
-    let bsdf = py.detach(|| tabulate(model.as_ref(), basis)).or_raise()?;
+    let bsdf = run_kept(
+        py,
+        kept.as_deref(),
+        progress.as_ref(),
+        |sum| sum.text(&format!("{kind} {numbers:?} {basis}")),
+        |work| tabulate(model.as_ref(), basis, work),
+    )?;
     Ok(PyBsdf(Arc::new(bsdf)))
 }
 

@@ -3,17 +3,18 @@
 use crate::arrays::{Numbers, directions, numbers};
 use crate::bsdf::PyBsdf;
 use crate::error::{InputError, OrRaise};
+use crate::kept::{PyKept, run_kept};
 use glam::DVec2;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use sunpeak_bsdf::synthetic::{
     Basis, Blind, Diffuser, Fabric, Goniophotometer, Mesh, Pane, Panel, Perforated, Product, Weave, Woven,
-    tabulate, tabulate_exact,
+    tabulate_exact, tabulate_watched,
 };
 
-type Numbered = HashMap<String, f64>;
+type Numbered = BTreeMap<String, f64>;
 
 /// A product by its kind and numbers.
 fn product(kind: &str, numbers: &Numbered) -> PyResult<Box<dyn Product>> {
@@ -83,7 +84,7 @@ fn product(kind: &str, numbers: &Numbered) -> PyResult<Box<dyn Product>> {
 /// Tabulate a product as a goniophotometer sees it.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "keywords of the Python face")]
-#[pyo3(signature = (kind, numbers, basis, rays, value_noise, fwhm_deg, seed))]
+#[pyo3(signature = (kind, numbers, basis, rays, value_noise, fwhm_deg, seed, kept=None, progress=None))]
 pub fn synthetic_bsdf(
     py: Python<'_>,
     kind: &str,
@@ -93,20 +94,42 @@ pub fn synthetic_bsdf(
     value_noise: f64,
     fwhm_deg: f64,
     seed: u64,
+    kept: Option<PyRef<'_, PyKept>>,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<PyBsdf> {
     let product = product(kind, &numbers)?;
     let basis: Basis = basis.parse().or_raise()?;
     let seen_by = Goniophotometer { rays, value_noise, fwhm_deg, seed };
-    let bsdf = py.detach(|| tabulate(product.as_ref(), basis, &seen_by)).or_raise()?;
+    let bsdf = run_kept(
+        py,
+        kept.as_deref(),
+        progress.as_ref(),
+        |sum| sum.text(&format!("{kind} {numbers:?} {basis} {seen_by:?}")),
+        |work| tabulate_watched(product.as_ref(), basis, &seen_by, work),
+    )?;
     Ok(PyBsdf(Arc::new(bsdf)))
 }
 
 /// Tabulate a product and keep its through part as its closed form has it.
 #[pyfunction]
-pub fn exact_bsdf(py: Python<'_>, kind: &str, numbers: Numbered, basis: &str) -> PyResult<PyBsdf> {
+#[pyo3(signature = (kind, numbers, basis, kept=None, progress=None))]
+pub fn exact_bsdf(
+    py: Python<'_>,
+    kind: &str,
+    numbers: Numbered,
+    basis: &str,
+    kept: Option<PyRef<'_, PyKept>>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<PyBsdf> {
     let product = product(kind, &numbers)?;
     let basis: Basis = basis.parse().or_raise()?;
-    let bsdf = py.detach(|| tabulate_exact(product.as_ref(), basis)).or_raise()?;
+    let bsdf = run_kept(
+        py,
+        kept.as_deref(),
+        progress.as_ref(),
+        |sum| sum.text(&format!("exact {kind} {numbers:?} {basis}")),
+        |work| tabulate_exact(product.as_ref(), basis, work),
+    )?;
     Ok(PyBsdf(Arc::new(bsdf)))
 }
 

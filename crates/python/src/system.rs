@@ -3,6 +3,7 @@
 use crate::arrays::{Rows, directions};
 use crate::bsdf::PyBsdf;
 use crate::error::{InputError, OrRaise};
+use crate::kept::{PyKept, run_kept};
 use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -93,10 +94,25 @@ impl PySystem {
     }
 
     /// One band in a basis; `middle`: panes by their value at the middle of a patch.
-    fn tabulate(&self, py: Python<'_>, basis: &str, band: &str, middle: bool) -> PyResult<PyBsdf> {
+    #[pyo3(signature = (basis, band, middle, kept=None, progress=None))]
+    fn tabulate(
+        &self,
+        py: Python<'_>,
+        basis: &str,
+        band: &str,
+        middle: bool,
+        kept: Option<PyRef<'_, PyKept>>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<PyBsdf> {
         let (band, basis) = (self::band(band)?, basis.parse::<Basis>().or_raise()?);
         let panes = if middle { Panes::Middle } else { Panes::Mean };
-        let bsdf = py.detach(|| self.0.tabulate(basis, band, panes)).or_raise()?;
+        let bsdf = run_kept(
+            py,
+            kept.as_deref(),
+            progress.as_ref(),
+            |sum| sum.text(&format!("{basis} {band:?} {panes:?}")).and_then(|()| self.0.sum_up(sum)),
+            |work| self.0.tabulate(basis, band, panes, work),
+        )?;
         Ok(PyBsdf(Arc::new(bsdf)))
     }
 }

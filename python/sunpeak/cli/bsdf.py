@@ -18,6 +18,7 @@ from sunpeak.cli.bsdf_show import show
 from sunpeak.cli.bsdf_system import system
 from sunpeak.cli.options import Quiet
 from sunpeak.cli.output import emit_json, note
+from sunpeak.cli.run import Resume, running
 from sunpeak.cli.values import parse_instrument, parse_numbers
 from sunpeak.inspection import inspect
 from sunpeak.scattering import Bsdf, Peak, side_of_ray
@@ -97,12 +98,15 @@ def blind(
     width: Annotated[float, typer.Option(help="Width of the slats over their spacing.")] = Blind.width,
     tilt: Annotated[float, typer.Option(help="Tilt from the normal, up at the front, degrees.")] = Blind.tilt_deg,
     scattered: Annotated[float, typer.Option(help="Share that the slats scatter through.")] = Blind.scattered,
+    resume: Resume = False,
+    quiet: Quiet = False,
 ) -> None:
     """Make a venetian blind of flat slats from formulas.
 
     [dim]$[/dim] [cyan]sunpeak bsdf blind -o blind.xml --tilt 30[/cyan]
     """
-    Blind(width, tilt, scattered).write(output, basis)
+    with running(output, resume, quiet) as run:
+        Blind(width, tilt, scattered).write(output, basis, run=run)
 
 
 @app.command("split")

@@ -8,8 +8,9 @@ import typer
 from sunpeak.bases import basis_name
 from sunpeak.cli.options import Quiet
 from sunpeak.cli.output import note
+from sunpeak.cli.run import Resume, running
 from sunpeak.cli.values import parse_length
-from sunpeak.files import check_target
+from sunpeak.runs import Run
 from sunpeak.scattering import Bsdf
 
 WRITTEN = "What the file says"
@@ -57,6 +58,7 @@ def convert(
     name: Name = None,
     manufacturer: Manufacturer = None,
     thickness: Thickness = None,
+    resume: Resume = False,
     quiet: Quiet = False,
 ) -> None:
     """Tabulate a BSDF in another basis by flux, turn it, mend it, put visible and solar together.
@@ -67,12 +69,11 @@ def convert(
 
     [dim]$[/dim] [cyan]sunpeak bsdf convert visible.xml --solar solar.xml -o both.xml[/cyan]
     """
-    check_target(output)
     wanted = None if basis is None else basis_name(basis, resolution)
     if basis is None and resolution is not None:
         raise typer.BadParameter("--resolution without --basis; expected --basis t3 or t4 beside it")
 
-    def converted(bsdf: Bsdf) -> Bsdf:
+    def converted(bsdf: Bsdf, run: Run) -> Bsdf:
         return bsdf.convert(
             wanted,
             rotate_deg=rotate,
@@ -80,23 +81,28 @@ def convert(
             swap_sides=swap_sides,
             reciprocity=reciprocity,
             keep_peak=keep_peak,
+            run=run,
         )
 
-    visible = Bsdf.load(file)
-    source = file if solar is None else solar
-    beside: Bsdf | None = Bsdf.load(source) if solar is not None else visible
-    if beside is not None and has_solar(beside):
-        beside = Bsdf.load_solar(source)
-    elif solar is None:
-        beside = None
-    converted(visible).save(
-        output,
-        solar=None if beside is None else converted(beside),
-        name=name,
-        manufacturer=manufacturer,
-        thickness_m=thickness,
-    )
+    with running(output, resume, quiet) as run:
+        visible = Bsdf.load(file)
+        beside = solar_beside(visible, file, solar)
+        converted(visible, run).save(
+            output,
+            solar=None if beside is None else converted(beside, run),
+            name=name,
+            manufacturer=manufacturer,
+            thickness_m=thickness,
+        )
     note(str(output), quiet)
+
+
+def solar_beside(visible: Bsdf, file: Path, solar: Path | None) -> Bsdf | None:
+    """Find what becomes the solar band: of the file named for it, or of the file itself, or none."""
+    if solar is None:
+        return Bsdf.load_solar(file) if has_solar(visible) else None
+    other = Bsdf.load(solar)
+    return Bsdf.load_solar(solar) if has_solar(other) else other
 
 
 def has_solar(bsdf: Bsdf) -> bool:

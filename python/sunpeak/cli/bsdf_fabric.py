@@ -8,6 +8,7 @@ import typer
 
 from sunpeak.cli.options import Quiet
 from sunpeak.cli.output import note
+from sunpeak.cli.run import Resume, running
 from sunpeak.cli.values import parse_share
 from sunpeak.fabrics import Fabric, RollerBlind
 
@@ -80,6 +81,7 @@ def fabric(
     reflectance: Annotated[
         Any, _share("--reflectance", "Diffuse, both sides.", FORMULA, _default("reflectance"))
     ] = None,
+    resume: Resume = False,
     quiet: Quiet = False,
 ) -> None:
     """Make a fabric from a datasheet or from a formula.
@@ -107,7 +109,8 @@ def fabric(
             )
         known = {"openness": openness, "cut_off_deg": cut_off}
         given |= {name: value for name, value in known.items() if value is not None}
-        Fabric(**given).write(output, basis)
+        with running(output, resume, quiet) as run:
+            Fabric(**given).write(output, basis, run=run)
         return
     if given:
         names = ", ".join("--" + name.replace("_", "-") for name in given)
@@ -115,7 +118,9 @@ def fabric(
             f"{names}: for fabrics from a formula; expected none of it beside a datasheet's numbers"
         )
     visible = _of_datasheet(tau_nn, tau_nh, rho_front, rho_back, openness, cut_off, quiet)
-    visible.write(output, basis, solar=_solar(visible, *solar), split=split)
+    beside = _solar(visible, *solar)
+    with running(output, resume, quiet) as run:
+        visible.write(output, basis, solar=beside, split=split, run=run)
 
 
 def _solar(

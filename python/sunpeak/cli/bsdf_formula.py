@@ -8,8 +8,8 @@ import typer
 from sunpeak.cli.bsdf_convert import Manufacturer, Name, Thickness
 from sunpeak.cli.options import Quiet
 from sunpeak.cli.output import note
+from sunpeak.cli.run import Resume, running
 from sunpeak.cli.values import parse_numbers
-from sunpeak.files import check_target
 from sunpeak.formulas import DEFAULTS, Formula, ModelName
 
 _MODELS = "  ".join(
@@ -39,6 +39,7 @@ def formula(
     name: Name = None,
     manufacturer: Manufacturer = None,
     thickness: Thickness = None,
+    resume: Resume = False,
     quiet: Quiet = False,
 ) -> None:
     """Tabulate a scattering model and write it."""
@@ -48,7 +49,7 @@ def formula(
         if not equals:
             raise typer.BadParameter(f"{each!r}; expected NAME=NUMBER, as in roughness=0.2")
         numbers[key.strip().replace("-", "_")] = parse_numbers(value)[0]
-    check_target(output)
-    bsdf = Formula(model, **numbers).tabulate(basis, resolution)
-    bsdf.save(output, name=name, manufacturer=manufacturer, thickness_m=thickness)
+    with running(output, resume, quiet) as run:
+        bsdf = Formula(model, **numbers).tabulate(basis, resolution, run=run)
+        bsdf.save(output, name=name, manufacturer=manufacturer, thickness_m=thickness)
     note(str(output), quiet)

@@ -9,6 +9,7 @@ import typer
 from sunpeak import __version__
 from sunpeak.cli import options
 from sunpeak.cli.output import note
+from sunpeak.cli.run import stoppable
 from sunpeak.cli.values import parse_numbers, parse_percent
 from sunpeak.files import check_target
 from sunpeak.generation import Box, GeneratedBsdf, SideName, generate_bsdf
@@ -100,6 +101,14 @@ def generate(
         Path | None,
         typer.Option(metavar="FOLDER", help="Write the exact split there, too.", rich_help_panel=TABLES),
     ] = None,
+    errors: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE.npz",
+            help="Write the standard error of every cell there, as NumPy's arrays.",
+            rich_help_panel=TABLES,
+        ),
+    ] = None,
     name: Annotated[str | None, typer.Option(help="In the file; the output's name.", rich_help_panel=TABLES)] = None,
     manufacturer: Annotated[str, typer.Option(help="In the file.", rich_help_panel=TABLES)] = "",
     resume: Annotated[
@@ -121,14 +130,14 @@ def generate(
 
     [dim]$[/dim] [cyan]sunpeak bsdf generate sheet.rad -o sheet.xml --basis t4 --resolution 64 --split sheet[/cyan]
     """
-    check_target(output)
-    state = output.with_name(output.name + ".columns")
     scene = options.load_scene(scenes, search_path, allow_commands)
     for warning in scene.warnings:
         note(f"sunpeak: warning: {warning}", quiet)
     sides: tuple[SideName, ...] = ("front", "back") if front == back else ("front",) if front else ("back",)
     tables = named_basis(basis, resolution)
-    try:
+    if errors is not None:
+        check_target(errors)
+    with stoppable(output, quiet) as state:
         made = generate_bsdf(
             scene,
             tables,
@@ -140,6 +149,7 @@ def generate(
             tolerance=tolerance,
             reciprocity=reciprocity,
             colour=colour,
+            cell_errors=errors is not None,
             peak=peak,
             name=output.stem if name is None else name,
             manufacturer=manufacturer,
@@ -150,17 +160,16 @@ def generate(
             resume=resume,
             progress=not quiet,
         )
-    except KeyboardInterrupt:
-        if state.exists():
-            note(f"sunpeak: stopped; finished columns are in {state}: the same command with --resume goes on", quiet)
-        raise
-    write(made, output, split, quiet)
+    write(made, output, split, errors, quiet)
 
 
-def write(made: GeneratedBsdf, output: Path, split: Path | None, quiet: bool) -> None:
+def write(made: GeneratedBsdf, output: Path, split: Path | None, errors: Path | None, quiet: bool) -> None:
     """Write the files, and say how exact they are."""
     made.save(output)
     note(made.summary(), quiet)
+    if errors is not None:
+        made.save_errors(errors)
+        note(str(errors), quiet)
     if split is not None:
         for written in made.save_split(split):
             note(str(written), quiet)

@@ -5,6 +5,8 @@ from typing import Annotated, Any
 
 import typer
 
+from sunpeak.cli.options import Quiet
+from sunpeak.cli.run import Resume, running
 from sunpeak.cli.values import parse_share
 from sunpeak.sheets import ExpandedMesh, Pattern, Perforated
 
@@ -25,12 +27,16 @@ def perforated(
     reflectance: Reflectance = "50%",
     basis: Basis = "klems",
     split: Split = None,
+    resume: Resume = False,
+    quiet: Quiet = False,
 ) -> None:
     """Make a sheet with round holes; light on their walls is lost.
 
     [dim]$[/dim] [cyan]sunpeak bsdf perforated -o sheet.xml --diameter 2 --pitch 4 --thickness 1[/cyan]
     """
-    Perforated(diameter, pitch, thickness, pattern, reflectance).write(output, basis, split=split)
+    sheet = Perforated(diameter, pitch, thickness, pattern, reflectance)
+    with running(output, resume, quiet) as run:
+        sheet.write(output, basis, split=split, run=run)
 
 
 def mesh(
@@ -42,9 +48,13 @@ def mesh(
     reflectance: Reflectance = "50%",
     basis: Basis = "klems",
     split: Split = None,
+    resume: Resume = False,
+    quiet: Quiet = False,
 ) -> None:
     """Make flattened expanded metal: rhombic openings with upright walls; light on them is lost.
 
     [dim]$[/dim] [cyan]sunpeak bsdf mesh -o mesh.xml --long-way 10 --short-way 6 --strand 1.2 --thickness 1[/cyan]
     """
-    ExpandedMesh(long_way, short_way, strand, thickness, reflectance).write(output, basis, split=split)
+    sheet = ExpandedMesh(long_way, short_way, strand, thickness, reflectance)
+    with running(output, resume, quiet) as run:
+        sheet.write(output, basis, split=split, run=run)

@@ -8,6 +8,7 @@ import typer
 from sunpeak._core import InputError
 from sunpeak.cli.options import Quiet
 from sunpeak.cli.output import note
+from sunpeak.cli.run import Resume, running
 from sunpeak.panes import Pane
 from sunpeak.systems import Panes, Shade, System
 
@@ -20,8 +21,8 @@ def system(
         list[str],
         typer.Argument(
             metavar="LAYER…",
-            help="From outside to inside: an IGSDB JSON or Optics file, glass:INDEX,MM[,ABSORPTION/m], "
-            "pane:TAU,RHO_FRONT,RHO_BACK (visible) with [/TAU,RHO,RHO] (solar), a BSDF XML file or the "
+            help="From outside to inside: an IGSDB JSON or Optics file, glass:INDEX,MM or glass:INDEX,MM,ABSORPTION/m, "
+            "pane:TAU,RHO_FRONT,RHO_BACK (visible) with /TAU,RHO,RHO after it (solar), a BSDF XML file or the "
             "folder of a split. gap is allowed between them and means nothing; :flip at its end turns a layer.",
         ),
     ],
@@ -35,6 +36,7 @@ def system(
         typer.Option(help="In Klems patches a pane's mean, or its value at the middle angle (as WINDOW has it)."),
     ] = "mean",
     name: Annotated[str | None, typer.Option(help="What the file calls it.", show_default="the layers' names")] = None,
+    resume: Resume = False,
     quiet: Quiet = False,
 ) -> None:
     """Make one BSDF of panes and shades, with all reflections between them.
@@ -44,7 +46,8 @@ def system(
     [dim]$[/dim] [cyan]sunpeak bsdf system glass:1.52,4 fabric --basis t3-4096 -o window.xml --split w[/cyan]
     """
     made = System([_layer(text) for text in layers if text != GAP], name)
-    made.write(output, basis, split=split, panes=panes)
+    with running(output, resume, quiet) as run:
+        made.write(output, basis, split=split, panes=panes, run=run)
     if not made.has_solar:
         note(f"{output}: the visible band alone; a layer's file has no solar values", quiet)
 

@@ -3,7 +3,7 @@
 use crate::codec::{Decoder, Encoder, damaged};
 use crate::{
     basis::AngleBasis,
-    bsdf::Sides,
+    bsdf::{Bsdf, Sides},
     distribution::Distribution,
     peak::{ColumnPeak, Part, Split},
     table::{Matrix, Table},
@@ -72,6 +72,20 @@ impl Contents {
             reflection_back: side()?,
         };
         Ok(Self { document, sides })
+    }
+}
+
+impl Bsdf {
+    /// Sum up all that makes it what it is: tables, and what their splits take.
+    ///
+    /// # Errors
+    /// Of the encoder's writer.
+    pub fn sum_up(&self, out: &mut Encoder<impl Write>) -> io::Result<()> {
+        for (name, distribution) in self.own_distributions() {
+            out.text(name)?;
+            write_distribution(out, distribution)?;
+        }
+        Ok(())
     }
 }
 

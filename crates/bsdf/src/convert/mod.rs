@@ -11,6 +11,7 @@ use crate::{
     layout::Layout,
     synthetic::Basis,
     table::Table,
+    work::Work,
     xml::Document,
 };
 use motion::Motion;
@@ -68,7 +69,18 @@ const NAMES: [&str; 4] = ["Transmission Front", "Transmission Back", "Reflection
 
 impl Bsdf {
     /// The same product otherwise tabulated. Flux is kept: each new value is the mean of the old table over its pair of cells.
+    ///
+    /// # Errors
+    /// Where the angle is not finite, or the tables cannot be made reciprocal.
     pub fn convert(&self, to: &Conversion) -> Result<Self> {
+        self.convert_watched(to, &Work::default())
+    }
+
+    /// As [`Self::convert`], as work that is watched and kept.
+    ///
+    /// # Errors
+    /// As there; when the work is stopped.
+    pub fn convert_watched(&self, to: &Conversion, work: &Work) -> Result<Self> {
         if !to.rotate_deg.is_finite() {
             return Err(Error::value(format!(
                 "rotation by {} degrees; expected a finite angle",
@@ -76,10 +88,21 @@ impl Bsdf {
             )));
         }
         let motion = Motion { mirror_x: to.flip, turn: to.rotate_deg.rem_euclid(360.0).to_radians() };
+        let old = self.own_distributions();
+        let layouts: Vec<Option<Layout>> = old.iter().map(|(_, d)| new_layout(d, to, motion)).collect();
+        let resamplings: Vec<Option<Resampling>> = old
+            .iter()
+            .zip(&layouts)
+            .map(|((_, d), layout)| layout.as_ref().map(|l| Resampling::new(d, l, motion, to.keep_peak)))
+            .collect();
+        work.expect(resamplings.iter().flatten().map(Resampling::amount).sum());
         let mut named: Vec<Named> = Vec::new();
-        for (name, distribution) in self.own_distributions() {
-            let name = if to.flip != to.swap_sides { other_side(name) } else { name };
-            named.push((name, moved(distribution, to, motion)));
+        for ((name, distribution), resampling) in old.iter().zip(&resamplings) {
+            let tables = match resampling {
+                Some(resampling) => resampling.tables(name, work)?,
+                None => (distribution.luminous().clone(), distribution.color().cloned()),
+            };
+            named.push((if to.flip != to.swap_sides { other_side(name) } else { name }, tables));
         }
         if to.reciprocal {
             make_reciprocal(&mut named)?;
@@ -106,14 +129,12 @@ fn other_side(name: &str) -> &'static str {
     NAMES[other]
 }
 
-fn moved(distribution: &Distribution, to: &Conversion, motion: Motion) -> Tables {
+/// The cells that a table is brought into; none: it stays as it is.
+fn new_layout(distribution: &Distribution, to: &Conversion, motion: Motion) -> Option<Layout> {
     let old = distribution.luminous();
     let is_moved = !(motion.is_none() || old.is_isotropic() && !motion.mirror_x);
-    if to.basis.is_none() && !is_moved && !to.reciprocal && !to.keep_peak {
-        return (old.clone(), distribution.color().cloned());
-    }
-    let layout = to.basis.map_or_else(|| Layout::of(old), Basis::layout);
-    Resampling::new(distribution, &layout, motion, to.keep_peak).tables()
+    let stays = to.basis.is_none() && !is_moved && !to.reciprocal && !to.keep_peak;
+    (!stays).then(|| to.basis.map_or_else(|| Layout::of(old), Basis::layout))
 }
 
 /// Transmission of both sides with each other, reflection of each with itself. One transmission alone is reciprocal by being used

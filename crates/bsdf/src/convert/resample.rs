@@ -13,10 +13,12 @@ use crate::{
     layout::Layout,
     overlap::{Region, between_azimuths},
     table::{Columns, Table},
+    work::Work,
 };
 use glam::DVec2;
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_4;
+use sunpeak_core::Result;
 
 /// Slices that are worked on together.
 const BLOCK: usize = 32;
@@ -58,30 +60,62 @@ impl<'a> Resampling<'a> {
         Self { from: Planes::new(distribution, keep_peak), to, motion, keep_peak }
     }
 
-    /// The tables.
-    pub fn tables(&self) -> Tables {
-        let (columns, width, planes) = (self.to.incident.len(), self.to.exiting.len(), self.from.count());
-        let mut values = vec![0f32; columns * planes * width];
-        for block in self.slices().chunks(BLOCK) {
-            let exits: Vec<Exits> = block.par_iter().map(|slice| self.exits(*slice)).collect();
-            values.par_chunks_mut(planes * width).enumerate().for_each(|(column, out)| {
-                let region = self.to.incident.region(column);
-                let whole = self.to.incident.projected_solid_angle(column);
-                // Sums of many small shares need more digits than the values that come of them.
-                let mut sums = vec![0.0; out.len()];
-                for (slice, exits) in block.iter().zip(&exits) {
-                    self.add(&region, whole, *slice, exits, &mut sums);
-                }
-                out.iter_mut().zip(sums).for_each(|(value, sum)| *value += sum as f32);
-            });
+    /// Columns or steps of the work that `tables` is.
+    pub fn amount(&self) -> usize {
+        match self.slices().len() {
+            1 => self.to.incident.len(),
+            slices => slices.div_ceil(BLOCK),
         }
+    }
+
+    /// The tables, as the part of the work with this name.
+    pub fn tables(&self, name: &str, work: &Work) -> Result<Tables> {
+        let (width, planes) = (self.to.exiting.len(), self.from.count());
+        let slices = self.slices();
+        let mut columns = match &slices[..] {
+            [all] => {
+                let exits = [self.exits(*all)];
+                work.columns(name, self.to.incident.len(), |column| self.over(column, &slices, &exits))?
+            }
+            _ => {
+                let flat = self.sliced(name, &slices, work)?;
+                flat.chunks(planes * width).map(<[f32]>::to_vec).collect()
+            }
+        };
         if self.keep_peak {
-            let per_column = values.par_chunks_mut(planes * width).enumerate();
-            per_column.for_each(|(column, out)| self.add_peak(column, out));
+            columns.par_iter_mut().enumerate().for_each(|(column, out)| self.add_peak(column, out));
         }
-        let plane = |p: usize| self.to.table(|i, o| values[(i * planes + p) * width + o]);
+        let plane = |p: usize| self.to.table(|i, o| columns[i][p * width + o]);
         let color = (planes == 3).then(|| [plane(1).into_values(), plane(2).into_values()]);
-        (plane(0), color)
+        Ok((plane(0), color))
+    }
+
+    /// Values of all columns, one block of slices after the other.
+    fn sliced(&self, name: &str, slices: &[Slice], work: &Work) -> Result<Vec<f32>> {
+        let length = self.from.count() * self.to.exiting.len();
+        let nothing = vec![0f32; self.to.incident.len() * length];
+        let blocks: Vec<&[Slice]> = slices.chunks(BLOCK).collect();
+        work.steps(name, blocks.len(), nothing, |number, values| {
+            let block = blocks[number];
+            let exits: Vec<Exits> = block.par_iter().map(|slice| self.exits(*slice)).collect();
+            values.par_chunks_mut(length).enumerate().try_for_each(|(column, out)| {
+                work.check()?;
+                out.iter_mut().zip(self.over(column, block, &exits)).for_each(|(value, more)| *value += more);
+                Ok(())
+            })
+        })
+    }
+
+    /// What some slices give to a column.
+    fn over(&self, column: usize, slices: &[Slice], exits: &[Exits]) -> Vec<f32> {
+        let region = self.to.incident.region(column);
+        let whole = self.to.incident.projected_solid_angle(column);
+        // Sums of many small shares need more digits than the values that come of them.
+        let mut sums = vec![0.0; self.from.count() * self.to.exiting.len()];
+        for (slice, exits) in slices.iter().zip(exits) {
+            self.add(&region, whole, *slice, exits, &mut sums);
+        }
+        sums.into_iter().map(|sum| sum as f32).collect()
     }
 
     fn slices(&self) -> Vec<Slice> {

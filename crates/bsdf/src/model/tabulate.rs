@@ -7,10 +7,10 @@ use crate::{
     layout::Layout,
     synthetic::Basis,
     table::{Columns, Table},
+    work::Work,
     xml::Document,
 };
 use glam::DVec2;
-use rayon::prelude::*;
 use std::sync::Arc;
 use sunpeak_core::{Error, Result, Vec3};
 
@@ -38,7 +38,10 @@ const BESIDE: f64 = 1e-9;
 const GAUSS_2: [f64; 2] = [0.211_324_865_405_187_13, 0.788_675_134_594_812_9];
 
 /// Tabulate a model: every value is its mean over a pair of cells.
-pub fn tabulate(model: &dyn Model, basis: Basis) -> Result<Bsdf> {
+///
+/// # Errors
+/// Where the model is not the same at all azimuths and the basis is; when the work is stopped.
+pub fn tabulate(model: &dyn Model, basis: Basis, work: &Work) -> Result<Bsdf> {
     if basis.is_isotropic() && !model.is_isotropic() {
         return Err(Error::value(format!(
             "{}: not the same at all azimuths; expected a matrix or a t4 basis",
@@ -46,10 +49,16 @@ pub fn tabulate(model: &dyn Model, basis: Basis) -> Result<Bsdf> {
         )));
     }
     let layout = basis.layout();
-    let table = |front: bool, reflection: bool| Means { model, layout: &layout, front, reflection }.table();
-    let reflection = |front: bool| Some(Arc::new(Distribution::new(table(front, true), None)));
-    let transmission = |front: bool| {
-        model.transmits().then(|| Arc::new(Distribution::with_split(table(front, false), None)))
+    let tables = if model.transmits() { 4 } else { 2 };
+    work.expect(tables * layout.incident.len());
+    let table =
+        |front: bool, reflection: bool| Means { model, layout: &layout, front, reflection }.table(work);
+    let reflection = |front: bool| -> Result<Option<Arc<Distribution>>> {
+        Ok(Some(Arc::new(Distribution::new(table(front, true)?, None))))
+    };
+    let transmission = |front: bool| -> Result<Option<Arc<Distribution>>> {
+        let table = model.transmits().then(|| table(front, false)).transpose()?;
+        Ok(table.map(|table| Arc::new(Distribution::with_split(table, None))))
     };
     let document = Document {
         name: model.name(),
@@ -63,10 +72,10 @@ pub fn tabulate(model: &dyn Model, basis: Basis) -> Result<Bsdf> {
         ..Document::default()
     };
     let sides = Sides {
-        transmission_front: transmission(true),
-        transmission_back: transmission(false),
-        reflection_front: reflection(true),
-        reflection_back: reflection(false),
+        transmission_front: transmission(true)?,
+        transmission_back: transmission(false)?,
+        reflection_front: reflection(true)?,
+        reflection_back: reflection(false)?,
     };
     Ok(Bsdf::from_sides(document, sides))
 }
@@ -80,10 +89,10 @@ struct Means<'a> {
 }
 
 impl Means<'_> {
-    fn table(&self) -> Table {
-        let columns: Vec<Vec<f32>> =
-            (0..self.layout.incident.len()).into_par_iter().map(|c| self.column(c)).collect();
-        self.layout.table(|column, cell| columns[column][cell])
+    fn table(&self, work: &Work) -> Result<Table> {
+        let part = ("model", self.front, self.reflection);
+        let columns = work.columns(part, self.layout.incident.len(), |c| self.column(c))?;
+        Ok(self.layout.table(|column, cell| columns[column][cell]))
     }
 
     fn is_matrix(&self) -> bool {

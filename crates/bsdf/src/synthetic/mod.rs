@@ -28,5 +28,5 @@ pub use panel::{Diffuser, Panel};
 pub use perforated::Perforated;
 pub use product::{Lobe, Product};
 pub use roller_blind::RollerBlind;
-pub use tabulate::{tabulate, tabulate_exact};
+pub use tabulate::{tabulate, tabulate_exact, tabulate_watched};
 pub use weave::Weave;

@@ -8,7 +8,7 @@
 //! each other: the scattered light then fades towards grazing exits as it does towards grazing incidence.
 
 use super::{Basis, Goniophotometer, product::Product, tabulate, tabulate_exact};
-use crate::bsdf::Bsdf;
+use crate::{bsdf::Bsdf, work::Work};
 use glam::DVec2;
 use std::f64::consts::PI;
 use sunpeak_core::{Error, Result};
@@ -100,9 +100,12 @@ impl RollerBlind {
     }
 
     /// As [`Self::tabulate`], with the through part kept as the model has it rather than found in the table.
-    pub fn tabulate_exact(&self, basis: Basis) -> Result<Bsdf> {
+    ///
+    /// # Errors
+    /// Where the numbers contradict each other; when the work is stopped.
+    pub fn tabulate_exact(&self, basis: Basis, work: &Work) -> Result<Bsdf> {
         self.check()?;
-        tabulate_exact(&Hung::new(*self), basis)
+        tabulate_exact(&Hung::new(*self), basis, work)
     }
 
     /// Scattered transmittance [-] (beam-diffuse) at an angle of incidence [rad].
@@ -217,7 +220,8 @@ mod tests {
         for (basis, tolerance) in [("klems-quarter", 0.06), ("t3-1024", 0.01)] {
             let basis: Basis = basis.parse().unwrap();
             for blind in [blind(), weak] {
-                let (exact, found) = (blind.tabulate_exact(basis).unwrap(), blind.tabulate(basis).unwrap());
+                let (exact, found) =
+                    (blind.tabulate_exact(basis, &Work::default()).unwrap(), blind.tabulate(basis).unwrap());
                 for deg in [12.0f64, 30.0, 45.0] {
                     let w_in = Vec3::new(deg.to_radians().sin(), 0.0, deg.to_radians().cos());
                     let through = luminance(exact.through(w_in, PeakRule::Split));

@@ -12,6 +12,7 @@ use crate::{
     layout::Layout,
     table::{Columns, Matrix, Table},
     tree::Tree,
+    work::Work,
     xml::Document,
 };
 use glam::DVec2;
@@ -36,26 +37,40 @@ const BESIDE: f64 = 1e-9;
 /// Tabulate a product: transmission by cell averages (the delta's share of each cell is exact), as the goniophotometer sees them,
 /// and diffuse reflection.
 pub fn tabulate(product: &dyn Product, basis: Basis, seen_by: &Goniophotometer) -> Result<Bsdf> {
-    let side = |product: &dyn Product, seed: u64| {
-        let (table, color) = transmission(product, basis, &Goniophotometer { seed, ..*seen_by });
-        Distribution::with_split(table, color)
-    };
-    with_sides(product, basis, seen_by.is_exact(), |product, front| {
-        side(product, if front { seen_by.seed } else { seen_by.seed ^ 0x5bd1_e995 })
+    tabulate_watched(product, basis, seen_by, &Work::default())
+}
+
+/// As [`tabulate`], as work that is watched and kept.
+///
+/// # Errors
+/// As there; when the work is stopped.
+pub fn tabulate_watched(
+    product: &dyn Product,
+    basis: Basis,
+    seen_by: &Goniophotometer,
+    work: &Work,
+) -> Result<Bsdf> {
+    with_sides(product, basis, seen_by.is_exact(), work, |product, front| {
+        let seed = if front { seen_by.seed } else { seen_by.seed ^ 0x5bd1_e995 };
+        let (table, color) =
+            transmission(product, basis, &Goniophotometer { seed, ..*seen_by }, front, work)?;
+        Ok(Distribution::with_split(table, color))
     })
 }
 
 /// Tabulate a gray product and keep its through part as it is known, rather than what a split would find in the table.
-pub fn tabulate_exact(product: &dyn Product, basis: Basis) -> Result<Bsdf> {
-    with_sides(product, basis, true, |product, _| {
+///
+/// # Errors
+/// Where the product is not the same at all azimuths and the basis is; when the work is stopped.
+pub fn tabulate_exact(product: &dyn Product, basis: Basis, work: &Work) -> Result<Bsdf> {
+    with_sides(product, basis, true, work, |product, front| {
         let [incident, exiting] = basis.divisions();
         let averages = Averages { product, incident, exiting, blur: None, isotropic: basis.is_isotropic() };
-        let columns: Vec<(Vec<f64>, Delta)> = (0..averages.incident.len())
-            .into_par_iter()
-            .map(|column| (averages.scattered(column), averages.delta(column)))
-            .collect();
-        let (scattered, deltas): (Vec<_>, Vec<_>) = columns.into_iter().unzip();
-        with_exact_peak(basis, |column, cell| scattered[column][cell] as f32, &deltas)
+        let scattered = |column| averages.scattered(column).into_iter().map(|v| v as f32).collect();
+        let scattered = work.columns(("scattered", front), averages.incident.len(), scattered)?;
+        let deltas: Vec<Delta> =
+            (0..scattered.len()).into_par_iter().map(|column| averages.delta(column)).collect();
+        Ok(with_exact_peak(basis, |column, cell| scattered[column][cell], &deltas))
     })
 }
 
@@ -64,7 +79,8 @@ fn with_sides(
     product: &dyn Product,
     basis: Basis,
     exact: bool,
-    side: impl Fn(&dyn Product, bool) -> Distribution,
+    work: &Work,
+    side: impl Fn(&dyn Product, bool) -> Result<Distribution>,
 ) -> Result<Bsdf> {
     if basis.is_isotropic() && !product.is_isotropic() {
         return Err(Error::value(format!(
@@ -72,13 +88,12 @@ fn with_sides(
             product.name()
         )));
     }
-    let front = Arc::new(side(product, true));
     // Isotropic products are the same from behind; counted anew, they differ by their noise.
-    let back = if product.is_isotropic() && exact {
-        front.clone()
-    } else {
-        Arc::new(side(&OtherSide(product), false))
-    };
+    let alike = product.is_isotropic() && exact;
+    let [incident, _] = basis.divisions();
+    work.expect(if alike { 1 } else { 2 } * incident.len());
+    let front = Arc::new(side(product, true)?);
+    let back = if alike { front.clone() } else { Arc::new(side(&OtherSide(product), false)?) };
     let [reflection_front, reflection_back] = product
         .reflectance()
         .map(|reflectance| Some(Arc::new(Distribution::new(diffuse(reflectance, basis), None))));
@@ -111,19 +126,23 @@ fn diffuse(reflectance: f64, basis: Basis) -> Table {
 /// A luminous table, and CIE X and Z of coloured products.
 type Planes = (Table, Option<[Vec<f32>; 2]>);
 
-fn transmission(product: &dyn Product, basis: Basis, seen_by: &Goniophotometer) -> Planes {
+fn transmission(
+    product: &dyn Product,
+    basis: Basis,
+    seen_by: &Goniophotometer,
+    front: bool,
+    work: &Work,
+) -> Result<Planes> {
     let layout = basis.layout();
     let Layout { incident, exiting } = layout.clone();
     let averages =
         Averages { product, incident, exiting, blur: seen_by.blur(), isotropic: basis.is_isotropic() };
-    let columns: Vec<[Vec<f32>; 3]> =
-        (0..averages.incident.len()).into_par_iter().map(|i| averages.column(i, seen_by)).collect();
-    let plane = |k: usize| {
-        let value = |column: usize, cell: usize| columns[column][k].get(cell).copied().unwrap_or(0.0);
-        layout.table(value)
-    };
+    let width = averages.exiting.len();
+    let column = |i| averages.column(i, seen_by).concat();
+    let columns = work.columns(("seen", front), averages.incident.len(), column)?;
+    let plane = |k: usize| layout.table(|column, cell| columns[column][k * width + cell]);
     let color = product.tint().map(|_| [plane(1).into_values(), plane(2).into_values()]);
-    (plane(0), color)
+    Ok((plane(0), color))
 }
 
 /// Cell averages of one side of a product.

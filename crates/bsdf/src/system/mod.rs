@@ -20,7 +20,9 @@ pub use shade::{Range, Shade};
 pub use solve::Panes;
 pub use spectrum::Band;
 
+use crate::codec::Encoder;
 use glam::DVec2;
+use std::io;
 use sunpeak_core::{Error, Result};
 
 /// One layer.
@@ -68,6 +70,21 @@ impl System {
     /// Shades whose solar values nobody told.
     pub fn lacks_solar(&self) -> bool {
         self.shades.iter().any(|shade| shade.solar.is_none())
+    }
+
+    /// Sum up all layers.
+    ///
+    /// # Errors
+    /// Of the encoder's writer.
+    pub fn sum_up(&self, out: &mut Encoder<impl io::Write>) -> io::Result<()> {
+        out.text(&format!("{:?}", self.panes))?;
+        for shade in &self.shades {
+            out.count(usize::from(shade.flipped))?;
+            for bsdf in [Some(&shade.visible), shade.solar.as_ref()].into_iter().flatten() {
+                bsdf.sum_up(out)?;
+            }
+        }
+        Ok(())
     }
 
     fn check(&self, band: Band) -> Result<()> {

@@ -14,6 +14,7 @@ use crate::{
     exact_peak::{Delta, with_exact_peak},
     synthetic::Basis,
     table::Columns,
+    work::Work,
     xml::Document,
 };
 use glam::DVec2;
@@ -67,11 +68,14 @@ fn zeros(n: usize) -> Fluxes {
 
 impl System {
     /// One band of the system in a basis, its straight part kept exact.
-    pub fn tabulate(&self, basis: Basis, band: Band, panes: Panes) -> Result<Bsdf> {
+    ///
+    /// # Errors
+    /// Where a shade lacks the band or does not fit the basis; when the work is stopped.
+    pub fn tabulate(&self, basis: Basis, band: Band, panes: Panes, work: &Work) -> Result<Bsdf> {
         self.check(band)?;
         self.check_basis(basis)?;
         let solver = Solver::new(self, basis, band, panes);
-        let scattered = solver.scattered();
+        let scattered = solver.scattered(work)?;
         let [incident, exiting] = basis.divisions();
         let straight: Vec<Vec<(DVec2, Optics)>> = (0..incident.len())
             .into_par_iter()
@@ -190,18 +194,19 @@ impl<'a> Solver<'a> {
     }
 
     /// What is scattered [1/sr], by the sides where it comes from and goes to, by column and exiting cell.
-    fn scattered(&self) -> [[Vec<Vec<f32>>; 2]; 2] {
+    fn scattered(&self, work: &Work) -> Result<[[Vec<Vec<f32>>; 2]; 2]> {
         let [incident, exiting] = self.basis.divisions();
         if self.system.shades.is_empty() {
             let nothing = || vec![vec![0.0; exiting.len()]; incident.len()];
-            return [[nothing(), nothing()], [nothing(), nothing()]];
+            return Ok([[nothing(), nothing()], [nothing(), nothing()]]);
         }
         let on_cells = matches!(self.cells.division, Columns::Patches(_));
-        let fluxes = self.fluxes(!on_cells);
+        work.expect(self.groups.len() + 4 * incident.len());
+        let fluxes = self.fluxes(!on_cells, work)?;
         let area = |cell: usize| self.cells.division.projected_solid_angle(cell);
         let once = (!on_cells).then(|| Once::new(self, &incident, &exiting));
-        let side = |from: usize, to: usize| -> Vec<Vec<f32>> {
-            let column = |column: usize| {
+        let side = |from: usize, to: usize| -> Result<Vec<Vec<f32>>> {
+            let column = |column: usize| -> Vec<f32> {
                 let i = self.cells.division.index(incident.point(column, [0.5, 0.5]));
                 let first = once.as_ref().map(|once| once.column(self, from, to, column));
                 let value = |cell: usize| {
@@ -211,13 +216,13 @@ impl<'a> Solver<'a> {
                 };
                 (0..exiting.len()).map(value).collect()
             };
-            (0..incident.len()).into_par_iter().map(column).collect()
+            work.columns(("scattered", from, to), incident.len(), column)
         };
-        [[side(0, 0), side(0, 1)], [side(1, 0), side(1, 1)]]
+        Ok([[side(0, 0)?, side(0, 1)?], [side(1, 0)?, side(1, 1)?]])
     }
 
     /// Fluxes that are scattered; if asked, without those that are scattered only once.
-    fn fluxes(&self, beyond_once: bool) -> Fluxes {
+    fn fluxes(&self, beyond_once: bool, work: &Work) -> Result<Fluxes> {
         let n = self.cells.len();
         let (system, mut sum) = (self.system, zeros(n));
         let ranges = [Range::Visible, Range::Invisible].map(|range| {
@@ -232,6 +237,7 @@ impl<'a> Solver<'a> {
             })
         });
         for group in &self.groups {
+            work.check()?;
             let Some(shades) = &ranges[usize::from(group.range == Range::Invisible)] else { continue };
             let stack = |k: usize| -> Vec<Optics> { (0..n).map(|c| self.stack_over(k, group, c)).collect() };
             let mut straight = vec![stack(0)];
@@ -259,8 +265,9 @@ impl<'a> Solver<'a> {
                     take_once(&mut sum, group.weight, &around, residual);
                 }
             }
+            work.advance(1);
         }
-        sum
+        Ok(sum)
     }
 }
 

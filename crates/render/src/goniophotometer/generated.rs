@@ -36,6 +36,8 @@ pub struct GeneratedSide {
     /// Root mean square standard error of the cells over their root mean square [-]: scattered transmission, reflection. Before cells
     /// are put together.
     pub cell_error: [f64; 2],
+    /// If asked for, standard error [1/sr] of each of these cells, one column after the other: scattered transmission, reflection.
+    pub cell_errors: Option<[Vec<f32>; 2]>,
 }
 
 /// Hemispherical values of a column [-], and their standard errors.
@@ -84,6 +86,7 @@ pub(super) fn assemble(
     }
     for (side, modes) in sides.iter_mut().zip(&counted) {
         side.cell_error = [&modes[0], &modes[1]].map(relative_error);
+        side.cell_errors = options.cell_errors.then(|| [&modes[0], &modes[1]].map(|mode| mode.error.clone()));
     }
     let mut tables = Sides::default();
     for (side, [transmission, reflection]) in job.sides.iter().zip(counted) {
@@ -127,7 +130,8 @@ fn summary(job: &Job, side: Side, columns: &[Column]) -> GeneratedSide {
             samples: c.rays,
         }
     };
-    GeneratedSide { side, columns: columns.iter().map(one).collect(), cell_error: [0.0; 2] }
+    let columns = columns.iter().map(one).collect();
+    GeneratedSide { side, columns, cell_error: [0.0; 2], cell_errors: None }
 }
 
 /// Fluxes become values: over the projected solid angle of each cell.

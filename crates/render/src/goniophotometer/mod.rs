@@ -64,6 +64,8 @@ pub struct GonioOptions {
     pub reciprocity: bool,
     /// Three channels.
     pub colored: bool,
+    /// Keep the standard error of every cell.
+    pub cell_errors: bool,
     /// The same seed gives the same table, on any number of threads.
     pub seed: u64,
     /// Threads to use; `None` is all cores.
@@ -87,6 +89,7 @@ impl GonioOptions {
             tolerance: 0.05,
             reciprocity: true,
             colored: false,
+            cell_errors: false,
             seed: 0,
             threads: None,
             state: None,

@@ -3,10 +3,10 @@
 use super::Job;
 use super::column::{Column, Counts};
 use super::walk::{End, walk};
-use std::fs::{self, File};
-use std::io::{self, BufReader, BufWriter, Read, Write};
-use std::path::{Path, PathBuf};
-use sunpeak_bsdf::codec::{Decoder, Encoder, HASH, damaged};
+use std::fs::File;
+use std::io::{self, BufReader, Read, Write};
+use std::path::Path;
+use sunpeak_bsdf::codec::{Decoder, Encoder, HASH, damaged, replace_file};
 use sunpeak_core::{Error, Location, Result, Rgb, Sampler};
 
 /// The first bytes of the file, with the version of its format.
@@ -20,19 +20,7 @@ pub(super) type Finished = Vec<Option<Column>>;
 
 /// Write what is finished.
 pub(super) fn save(path: &Path, job: &Job, finished: &Finished) -> Result<()> {
-    let temporary = beside(path);
-    let written = File::create(&temporary)
-        .and_then(|file| write(BufWriter::new(file), job, finished))
-        .and_then(|()| fs::rename(&temporary, path));
-    if written.is_err() {
-        let _ = fs::remove_file(&temporary);
-    }
-    written.map_err(|e| Error::io(path, e))
-}
-
-fn beside(path: &Path) -> PathBuf {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    path.with_file_name(format!(".{name}.{}", std::process::id()))
+    replace_file(path, |file| write(file, job, finished))
 }
 
 fn write(file: impl Write, job: &Job, finished: &Finished) -> io::Result<()> {
@@ -110,7 +98,7 @@ fn read_column(from: &mut Decoder<impl Read>) -> io::Result<Column> {
 
 /// What a run depends on, as a sum: its options, and where some walks through the scene end, to the last bit.
 fn fingerprint(job: &Job) -> io::Result<[u8; HASH]> {
-    let mut sum = Encoder::new(Vec::new());
+    let mut sum = Encoder::new(io::sink());
     sum.text(&job.choices())?;
     for index in 0..PROBES {
         let mut sampler = Sampler::new(0x5eed, 0, index);
@@ -127,8 +115,5 @@ fn fingerprint(job: &Job) -> io::Result<[u8; HASH]> {
         sum.numbers(direction.to_array())?;
         sum.numbers(carried.to_array())?;
     }
-    let bytes = sum.finish()?;
-    let mut print = [0; HASH];
-    print.copy_from_slice(&bytes[bytes.len() - HASH..]);
-    Ok(print)
+    Ok(sum.sum())
 }
