@@ -10,6 +10,7 @@ mod fabric;
 mod generate;
 mod glare;
 mod goal;
+mod measured;
 mod model;
 mod picture;
 mod render;
@@ -43,6 +44,8 @@ mod _core {
     use super::generate::{PyGenerated, generate_bsdf, straight_transmittance};
     #[pymodule_export]
     use super::glare::{glare, glare_sources, position_indices};
+    #[pymodule_export]
+    use super::measured::{PyMeasured, PyScan, measured_bsdf, read_scans};
     #[pymodule_export]
     use super::model::{model_bsdf, model_value};
     #[pymodule_export]
