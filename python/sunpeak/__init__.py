@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from sunpeak.generation import GeneratedBsdf, GeneratedSide, generate_bsdf, straight_transmittance
     from sunpeak.glare_report import GlareReport, GlareSource, ZoneLuminances
     from sunpeak.glare_rules import GlareRules, RulesName, Task
+    from sunpeak.measurement import MeasuredBsdf, MeasuredPart, Scan, measured_bsdf, read_scans
     from sunpeak.panes import Pane
     from sunpeak.pictures import ExactSource, Picture
     from sunpeak.rendering import World, render, trace
@@ -47,6 +48,8 @@ __all__ = [
     "GlareRules",
     "GlareSource",
     "InputError",
+    "MeasuredBsdf",
+    "MeasuredPart",
     "Pane",
     "Perforated",
     "Picture",
@@ -56,6 +59,7 @@ __all__ = [
     "RulesName",
     "Run",
     "Samples",
+    "Scan",
     "Scene",
     "SceneCheck",
     "Shade",
@@ -74,7 +78,9 @@ __all__ = [
     "evaluate",
     "generate_bsdf",
     "glare",
+    "measured_bsdf",
     "plot_bsdf",
+    "read_scans",
     "render",
     "side_of_ray",
     "straight_transmittance",
@@ -102,6 +108,11 @@ _HOMES = {
     "GlareRules": "glare_rules",
     "RulesName": "glare_rules",
     "Task": "glare_rules",
+    "MeasuredBsdf": "measurement",
+    "MeasuredPart": "measurement",
+    "Scan": "measurement",
+    "measured_bsdf": "measurement",
+    "read_scans": "measurement",
     "Pane": "panes",
     "ExactSource": "pictures",
     "Picture": "pictures",

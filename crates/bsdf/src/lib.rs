@@ -25,6 +25,7 @@ mod incident;
 mod kernel;
 mod layout;
 mod load;
+pub mod measured;
 pub mod model;
 pub mod outline;
 pub mod overlap;

@@ -11,6 +11,7 @@ mod generate;
 mod glare;
 mod goal;
 mod kept;
+mod measured;
 mod model;
 mod picture;
 mod render;
@@ -46,6 +47,8 @@ mod _core {
     use super::glare::{glare, glare_sources, position_indices};
     #[pymodule_export]
     use super::kept::PyKept;
+    #[pymodule_export]
+    use super::measured::{PyMeasured, PyScan, measured_bsdf, read_scans};
     #[pymodule_export]
     use super::model::{model_bsdf, model_value};
     #[pymodule_export]

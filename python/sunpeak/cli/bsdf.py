@@ -13,6 +13,7 @@ from sunpeak.cli.bsdf_fabric import fabric
 from sunpeak.cli.bsdf_formula import HELP as FORMULA_HELP
 from sunpeak.cli.bsdf_formula import formula
 from sunpeak.cli.bsdf_generate import generate
+from sunpeak.cli.bsdf_measured import measured
 from sunpeak.cli.bsdf_sheets import mesh, perforated
 from sunpeak.cli.bsdf_show import show
 from sunpeak.cli.bsdf_system import system
@@ -31,6 +32,7 @@ app.command("system")(system)
 app.command("formula", help=FORMULA_HELP)(formula)
 app.command("convert")(convert)
 app.command("generate")(generate)
+app.command("measured")(measured)
 
 File = Annotated[Path, typer.Argument(help="LBNL XML file, or the folder of a split.")]
 Instrument = Annotated[

@@ -104,12 +104,20 @@ def parse_time(text: str) -> datetime:
 
 def parse_instrument(text: str) -> float | Literal["find"]:
     """`1.5` as degrees, or `find`."""
-    if text.strip() == "find":
-        return "find"
+    return "find" if text.strip() == "find" else _width(text, ", or find")
+
+
+def parse_width(text: str) -> float:
+    """`1.5` as degrees."""
+    return _width(text, "")
+
+
+def _width(text: str, otherwise: str) -> float:
+    """Width of an instrument [deg]; `otherwise` is what else would be allowed."""
     try:
         width = float(text)
     except ValueError as error:
-        raise typer.BadParameter(f"{text!r}; expected degrees, as in 1.5, or find") from error
+        raise typer.BadParameter(f"{text!r}; expected degrees, as in 1.5{otherwise}") from error
     if not 0.05 <= width <= 20.0:
-        raise typer.BadParameter(f"{text!r}; expected 0.05 to 20 degrees, or find")
+        raise typer.BadParameter(f"{text!r}; expected 0.05 to 20 degrees{otherwise}")
     return width

@@ -6,6 +6,7 @@
 
 use super::{
     neighbourhood::{RULES, distances},
+    nonnegative::least_squares,
     shape::Shape,
 };
 use crate::{
@@ -221,34 +222,7 @@ impl View {
             shares.iter().zip(&self.cells).map(|(s, c)| s / c.projected_solid_angle).collect();
         let base = vec![1.0; self.values.len()];
         let squares: f64 = self.values.iter().map(|v| v * v).sum();
-        let fits = self.lobes.iter().map(|lobe| least_squares([&peak, &base, lobe], &self.values));
+        let fits = self.lobes.iter().map(|lobe| least_squares([&peak, &base, lobe], &self.values).misfit);
         fits.fold(f64::INFINITY, f64::min) / squares
     }
-}
-
-/// Sum of squared misfits of the best combination of three regressors, none of them negative: all of their subsets are tried.
-fn least_squares(regressors: [&[f64]; 3], values: &[f64]) -> f64 {
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
-    let squares = dot(values, values);
-    let mut best = squares;
-    for subset in 1..8usize {
-        let used: Vec<usize> = (0..3).filter(|k| subset >> k & 1 == 1).collect();
-        let n = used.len();
-        // The others stand aside: unknowns of their own that are zero.
-        let entry = |i: usize, j: usize| match (used.get(i), used.get(j)) {
-            (Some(&a), Some(&b)) => dot(regressors[a], regressors[b]),
-            _ => f64::from(u8::from(i == j)),
-        };
-        let right = |i: usize| used.get(i).map_or(0.0, |&a| dot(regressors[a], values));
-        let matrix = glam::DMat3::from_cols_array_2d(&[0, 1, 2].map(|j| [0, 1, 2].map(|i| entry(i, j))));
-        if matrix.determinant() <= 0.0 {
-            continue;
-        }
-        let b = glam::DVec3::new(right(0), right(1), right(2));
-        let x = matrix.inverse() * b;
-        if x.to_array()[..n].iter().all(|v| *v >= 0.0) {
-            best = best.min(squares - x.dot(b));
-        }
-    }
-    best.max(0.0)
 }

@@ -9,12 +9,13 @@ mod interpolate;
 mod judge;
 mod neighbourhood;
 mod noise;
+pub(crate) mod nonnegative;
 pub mod reference;
 mod shape;
 mod split;
 mod surround;
 
-pub use instrument::{Instrument, find as find_instrument};
+pub use instrument::{FWHM_RANGE_DEG, Instrument, find as find_instrument};
 pub use shape::NARROWEST;
 pub use split::{ColumnPeak, Part, Split};
 
