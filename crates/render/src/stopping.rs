@@ -9,7 +9,7 @@ use sunpeak_core::{Rgb, luminance};
 
 /// Passes and samples before an estimate of the error means something: of single items, and of a picture's many blocks.
 const LEAST_OF_EACH: (usize, u32) = (5, 16);
-const LEAST_OF_GRID: (usize, u32) = (6, 8);
+const LEAST_OF_GRID: (usize, u32) = (8, 16);
 
 /// Passes and samples before noise is told apart by place.
 const LEAST_TO_ALLOT: (usize, u32) = (4, 4);
