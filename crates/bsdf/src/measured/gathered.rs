@@ -65,7 +65,8 @@ mod tests {
         let mut gathered = Gathered::default();
         lobes.iter().for_each(|lobe| gathered.add(lobe, 0.5));
         let few: Vec<Lobe> = gathered.lobes().collect();
-        assert!(few.len() < 60, "{}", few.len());
+        // Widths of 0.08 to 0.12 are two classes; middles up to 0.1 from the origin lie in 8 by 8 squares of 1/32 and 6 by 6 of 0.044.
+        assert!(few.len() <= 64 + 36, "{}", few.len());
         let moments = |lobes: &[Lobe]| {
             let flux: f64 = lobes.iter().map(|l| l.flux).sum();
             let middle = lobes.iter().map(|l| l.middle * l.flux).sum::<DVec2>() / flux;
