@@ -11,8 +11,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use sunpeak_core::{Control, Error, Result, Rgb, Sampler};
 
-/// Items that a thread takes at once.
+/// Items whose rays are counted together.
 const CHUNK: usize = 64;
+
+/// Chunks that a thread takes at once: so few that all threads end a pass at about the same time.
+const CHUNKS_AT_ONCE: usize = 8;
 
 /// Longest pass [samples per item].
 const LONGEST_PASS: u32 = 16;
@@ -126,7 +129,8 @@ impl Run<'_> {
     fn pass(&mut self, nominal: u32, sample: &(impl Fn(usize, Draw) -> Rgb + Sync)) -> Result<()> {
         let (done, reports, goal) = (self.done, self.reports, self.goal);
         let (allotment, groups) = (self.error.allotment(nominal), self.error.groups());
-        self.means.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, means)| {
+        let chunks = self.means.par_chunks_mut(CHUNK).enumerate().with_max_len(CHUNKS_AT_ONCE);
+        chunks.for_each(|(chunk, means)| {
             if reports.control.is_stopped() {
                 return;
             }
