@@ -103,7 +103,8 @@ pub(crate) fn estimate_until(
         done: 0,
         error: ErrorEstimate::new(groups),
     };
-    while let Some(pass) = goal.next_pass(run.done, run.relative_error()) {
+    // Telling the error costs a look at all passes: only where it decides.
+    while let Some(pass) = goal.next_pass(run.done, goal.error.and_then(|_| run.relative_error())) {
         pool.install(|| run.pass(pass, &sample))?;
         if run.is_good_enough(judge)? {
             break;
