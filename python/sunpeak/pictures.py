@@ -93,7 +93,7 @@ class Picture:
 
     @property
     def error(self) -> float | None:
-        """What the renderer stated: the error of the luminance of blocks of 8 by 8 pixels (root mean square, over the
+        """What the renderer stated: the error of the luminance of blocks of about 3 degrees (root mean square, over the
         mean luminance of all) [-] is below this with 95 % confidence; `None` of other pictures, and of too few paths.
         """
         words = " ".join(line for line in self.header if line.startswith("SUNPEAK_RENDER=")).split()
@@ -102,7 +102,9 @@ class Picture:
 
     @property
     def block_errors(self) -> Floats | None:
-        """Standard errors of the luminance of blocks of 8 by 8 pixels (rows, columns) [cd/m²], where known."""
+        """Standard errors of the luminance of blocks of pixels (rows, columns) [cd/m²], where known; the blocks are
+        squares of a power of two of pixels, about 3 degrees wide.
+        """
         found = self._core.block_errors()
         return None if found is None else found[0]
 

@@ -47,7 +47,8 @@ pub fn render_until(
     }
     let Some(camera) = Camera::new(view) else { return Err(Error::value("the view has no direction")) };
     let exact_suns = options.exact_suns.then(|| ExactSuns::find(world, view, width, height, options.seed));
-    let film = Film { camera, width, height, seed: options.seed };
+    let edge = block_edge(&camera, width, height);
+    let film = Film { camera, width, height, edge, seed: options.seed };
     let integrator = Integrator { world, limits: Limits::of(options), exact_suns: exact_suns.as_ref() };
     let sources = exact_suns.as_ref().map_or_else(Vec::new, ExactSuns::sources);
     let picture = |means: &Means| film.picture(world, view, options, means, &sources);
@@ -73,21 +74,48 @@ struct Film {
     camera: Camera,
     width: usize,
     height: usize,
+    /// Edge of the blocks of pixels whose error counts [pixels]: a power of two.
+    edge: usize,
     seed: u64,
 }
 
-/// Edge of the blocks of pixels whose error counts [pixels].
-const BLOCK: usize = 8;
+/// Width of the blocks whose error counts, about [deg], and its limits [pixels].
+const BLOCK_DEG: f64 = 3.0;
+const BLOCK_PIXELS: (usize, usize) = (4, 32);
+
+/// Edge of the blocks of a view without angles [pixels].
+const BLOCK_OF_PARALLEL_VIEW: usize = 8;
+
+/// Pixels along an edge of a block that is about [`BLOCK_DEG`] wide in the middle of the picture.
+fn block_edge(camera: &Camera, width: usize, height: usize) -> usize {
+    let (w, h) = (width as f64, height as f64);
+    let direction = |x: f64, y: f64| camera.ray(0.5 + x / w, 0.5 + y / h).map(|ray| ray.direction);
+    let step = |x: f64, y: f64| Some(direction(-x, -y)?.angle_between(direction(x, y)?));
+    let Some(angle) = step(0.5, 0.0).zip(step(0.0, 0.5)).map(|(x, y)| x.max(y)) else {
+        return BLOCK_OF_PARALLEL_VIEW;
+    };
+    if angle <= 0.0 {
+        return BLOCK_OF_PARALLEL_VIEW;
+    }
+    let (least, most) = BLOCK_PIXELS;
+    let edge = (BLOCK_DEG.to_radians() / angle).clamp(least as f64, most as f64);
+    1 << edge.log2().round() as u32
+}
 
 impl Film {
     fn block(&self, pixel: usize) -> u32 {
         let (column, row) = (pixel % self.width, pixel / self.width);
-        (row / BLOCK * self.width.div_ceil(BLOCK) + column / BLOCK) as u32
+        (row / self.edge * self.columns() + column / self.edge) as u32
+    }
+
+    /// Blocks in a row.
+    fn columns(&self) -> usize {
+        self.width.div_ceil(self.edge)
     }
 
     fn blocks(&self) -> Groups {
         let blocks = (0..self.width * self.height).map(|pixel| self.block(pixel)).collect();
-        Groups::grid(blocks, self.width.div_ceil(BLOCK))
+        Groups::grid(blocks, self.columns())
     }
 
     /// The picture that means make, exact sources put in.
@@ -100,8 +128,8 @@ impl Film {
         sources: &[ExactSource],
     ) -> Picture {
         let block_errors = means.group_errors.as_ref().map(|errors| BlockErrors {
-            edge: BLOCK,
-            columns: self.width.div_ceil(BLOCK),
+            edge: self.edge,
+            columns: self.columns(),
             luminance_cd_m2: errors.iter().map(|error| LUMINOUS_EFFICACY * error).collect(),
         });
         let mut picture = Picture {
@@ -126,7 +154,7 @@ impl Film {
         if values.iter().all(|value| value.min_element() >= 0.0) {
             return values.to_vec();
         }
-        let blocks = self.width.div_ceil(BLOCK) * self.height.div_ceil(BLOCK);
+        let blocks = self.columns() * self.height.div_ceil(self.edge);
         let mut sums = vec![(Rgb::ZERO, Rgb::ZERO); blocks];
         for (pixel, value) in values.iter().enumerate() {
             let (above, below) = &mut sums[self.block(pixel) as usize];
@@ -143,7 +171,7 @@ impl Film {
 
     fn sample(&self, integrator: &Integrator, pixel: usize, draw: Draw) -> Rgb {
         let (column, row) = (pixel % self.width, pixel / self.width);
-        let place = z_order(column % BLOCK, row % BLOCK);
+        let place = z_order(column % self.edge, row % self.edge);
         let mut sampler = draw.together(self.seed, u64::from(self.block(pixel)), place);
         let [u, v] = sampler.next_2d();
         let x = (column as f64 + u) / self.width as f64;
@@ -154,10 +182,10 @@ impl Film {
     }
 }
 
-/// Place along the curve that goes through a square of 8 by 8 so that what is near on the curve is near in the square.
+/// Place along the curve that goes through a square so that what is near on the curve is near in the square.
 fn z_order(column: usize, row: usize) -> u64 {
-    let bit = |k: usize| ((column >> k & 1) << (2 * k) | (row >> k & 1) << (2 * k + 1)) as u64;
-    bit(0) | bit(1) | bit(2)
+    let bit = |k: u32| ((column >> k & 1) << (2 * k) | (row >> k & 1) << (2 * k + 1)) as u64;
+    (0..=BLOCK_PIXELS.1.ilog2()).map(bit).sum()
 }
 
 /// The source's share of each pixel.

@@ -10,7 +10,7 @@ mod path;
 use crate::accel::Hit;
 use crate::backlight::Backlight;
 use crate::exact_sun::ExactSuns;
-use crate::guide::{Guide, Rates};
+use crate::guide::{GuideAt, Rates};
 use crate::light::power_heuristic;
 use crate::material::{Air, Arrival, Flight, Material, Scattering, Smooth, SmoothSample};
 use crate::shapes::Ray;
@@ -64,7 +64,7 @@ impl Integrator<'_> {
 
     /// Irradiance [W/m²] on the front of a surface element.
     pub fn irradiance(&self, point: Vec3, normal: Vec3, sampler: &mut Sampler) -> Rgb {
-        let sensor = Met::sensor(point, normal);
+        let sensor = Met::sensor(self.world, point, normal);
         let ray = Ray::new(point, -normal);
         let mut path = Path::from_camera(ray, f64::INFINITY, self.world.inside_at(&ray));
         let mut branches = Vec::new();
@@ -174,10 +174,9 @@ impl Integrator<'_> {
     /// `branches`, later one way of all.
     fn scatter(&self, path: &mut Path, met: &Met, branches: &mut Vec<Path>, sampler: &mut Sampler) -> bool {
         let smooth = &met.scattering.smooth;
-        let Some((guide, rates)) = self.guided(path, smooth) else {
+        let Some((guide, rates)) = met.guided(path) else {
             return smooth.draw(sampler).is_some_and(|sample| self.leave(path, met, &sample, sampler));
         };
-        let point = met.arrival.point;
         let go = |path: &mut Path, direction: Option<Vec3>, sampler: &mut Sampler| {
             let sample = direction.and_then(|direction| mixed(met, guide, &rates, direction));
             sample.is_some_and(|sample| self.leave(path, met, &sample, sampler))
@@ -192,7 +191,7 @@ impl Integrator<'_> {
                 path.ambient += other.ambient;
             };
             if rates.shades > 0.0 {
-                branch(guide.sample_shades(point, sampler.next_3d()), path, sampler);
+                branch(guide.sample_shades(sampler.next_3d()), path, sampler);
             }
             if rates.suns > 0.0 {
                 branch(guide.sample_suns(sampler.next_3d()), path, sampler);
@@ -205,7 +204,7 @@ impl Integrator<'_> {
         let direction = if choice < rates.own {
             smooth.sample(choice / rates.own, [u, v], sampler).map(|sample| sample.direction)
         } else if choice < rates.own + rates.shades {
-            guide.sample_shades(point, [(choice - rates.own) / rates.shades, u, v])
+            guide.sample_shades([(choice - rates.own) / rates.shades, u, v])
         } else {
             guide.sample_suns([(choice - rates.own - rates.shades) / rates.suns, u, v])
         };
@@ -261,19 +260,13 @@ impl Integrator<'_> {
         }
         field * power_heuristic(sample.pdf * share, self.world.distant.dome_pdf(sample.direction))
     }
-
-    /// The guide, if it helps these lobes, and how many directions it is asked for here.
-    fn guided(&self, path: &Path, smooth: &Smooth) -> Option<(&Guide, Rates)> {
-        let guide = self.world.guide.as_ref().filter(|_| smooth.can_be_guided())?;
-        Some((guide, if path.is_view() { guide.one_each() } else { guide.one_direction() }))
-    }
 }
 
 /// A direction that the lobes or the guide have drawn, weighed by the density of all that could have drawn it (Veach 1997,
 /// section 9.2: balance heuristic).
-fn mixed(met: &Met, guide: &Guide, rates: &Rates, direction: Vec3) -> Option<SmoothSample> {
+fn mixed(met: &Met, guide: &GuideAt, rates: &Rates, direction: Vec3) -> Option<SmoothSample> {
     let smooth = &met.scattering.smooth;
-    let pdf = rates.own * smooth.pdf(direction) + guide.pdf(rates, met.arrival.point, direction);
+    let pdf = rates.own * smooth.pdf(direction) + guide.pdf(rates, direction);
     let cosine = direction.dot(met.arrival.normal).abs();
     let source_factor = smooth.source_factor(direction);
     let weight = smooth.evaluate(direction).scaled(cosine / pdf);
@@ -291,6 +284,8 @@ struct Met<'w> {
     shares: [f64; 4],
     /// The far field behind it.
     backlight: Option<&'w Backlight>,
+    /// Where light comes from, if that helps its lobes.
+    guide: Option<GuideAt<'w>>,
 }
 
 impl<'w> Met<'w> {
@@ -305,7 +300,14 @@ impl<'w> Met<'w> {
             Smooth::Table(_) => world.backlights.of(hit.object, arrival.at_front()),
             _ => None,
         };
-        Self { arrival, material: Some(material), is_flat, scattering, shares, backlight }
+        let guide = guide_of(world, &scattering.smooth, arrival.point);
+        Self { arrival, material: Some(material), is_flat, scattering, shares, backlight, guide }
+    }
+
+    /// The guide, and how many directions it is asked for here.
+    fn guided(&self, path: &Path) -> Option<(&GuideAt<'w>, Rates)> {
+        let guide = self.guide.as_ref()?;
+        Some((guide, if path.is_view() { guide.one_each() } else { guide.one_direction() }))
     }
 
     /// The straight chain of a path that something else happens to as well, where it is not left to chance: from the camera, and
@@ -337,6 +339,7 @@ impl<'w> Met<'w> {
             scattering,
             shares: [0.0, 0.0, 0.0, 1.0],
             backlight: None,
+            guide: None,
         }
     }
 
@@ -358,10 +361,11 @@ impl<'w> Met<'w> {
     }
 
     /// A surface element that takes up all light at its front.
-    fn sensor(point: Vec3, normal: Vec3) -> Self {
+    fn sensor(world: &'w World, point: Vec3, normal: Vec3) -> Self {
         let arrival = Arrival::new(point, normal, -normal);
         let scattering =
             Scattering { smooth: Smooth::Sensor(Frame::from_normal(normal)), ..Scattering::BLACK };
+        let guide = guide_of(world, &scattering.smooth, point);
         Self {
             arrival,
             material: None,
@@ -369,6 +373,7 @@ impl<'w> Met<'w> {
             scattering,
             shares: [0.0, 0.0, 0.0, 1.0],
             backlight: None,
+            guide,
         }
     }
 
@@ -376,6 +381,11 @@ impl<'w> Met<'w> {
     fn smooth_share(&self) -> f64 {
         if self.shares[3] > 0.0 { self.shares[3] / self.shares.iter().sum::<f64>() } else { 0.0 }
     }
+}
+
+/// The guide, where it helps these lobes.
+fn guide_of<'w>(world: &'w World, smooth: &Smooth, point: Vec3) -> Option<GuideAt<'w>> {
+    world.guide.as_ref().filter(|_| smooth.can_be_guided()).map(|guide| guide.at(point))
 }
 
 /// Russian roulette.

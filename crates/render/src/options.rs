@@ -19,7 +19,7 @@ pub struct RenderOptions {
     /// Paths for each ray or sensor, for a pixel in the mean (noisy blocks of pixels get more); powers of two converge best. With
     /// `time_s` the most that are traced; with neither, [`DEFAULT_SAMPLES`].
     pub samples: Option<u32>,
-    /// Stop when the error is this small [-] with 95 % confidence: the root mean square over blocks of 8 by 8 pixels (over rays or
+    /// Stop when the error is this small [-] with 95 % confidence: the root mean square over blocks of pixels about 3 degrees wide (over rays or
     /// sensors) of the error of their luminance, relative to the mean luminance of all. Exact suns have none. With `samples` or
     /// `time_s` whatever comes first.
     pub error: Option<f64>,

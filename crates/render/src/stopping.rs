@@ -7,12 +7,13 @@
 
 use sunpeak_core::{Rgb, luminance};
 
-/// Passes and samples before an estimate of the error means something: of single items, and of a picture's many blocks.
-const LEAST_OF_EACH: (usize, u32) = (5, 16);
-const LEAST_OF_GRID: (usize, u32) = (8, 16);
+/// Passes and samples of an item before an estimate of the error means something; and of a group, of which either suffices.
+const LEAST_PASSES: usize = 5;
+const LEAST_SAMPLES: u32 = 16;
+const LEAST_OF_GROUP: f64 = 1024.0;
 
-/// Passes and samples before noise is told apart by place.
-const LEAST_TO_ALLOT: (usize, u32) = (4, 4);
+/// Passes before noise is told apart by place.
+const LEAST_TO_ALLOT: usize = 4;
 
 /// Least and most samples of a group in a pass, over the nominal number.
 const ALLOTTED: (f64, f64) = (0.25, 16.0);
@@ -102,7 +103,7 @@ impl ErrorEstimate {
     /// Samples per item of each group in a pass of `nominal` samples: in proportion to the standard deviation of the group and its
     /// neighbours, so that the sum of the variances becomes smallest; all alike where that is not known.
     pub fn allotment(&self, nominal: u32) -> Vec<u32> {
-        let Some(columns) = self.groups.columns.filter(|_| self.has(LEAST_TO_ALLOT)) else {
+        let Some(columns) = self.groups.columns.filter(|_| self.passes.len() >= LEAST_TO_ALLOT) else {
             return vec![nominal; self.groups.count()];
         };
         let of_sample = |(variance, spread): (f64, &f64)| variance / spread;
@@ -168,14 +169,16 @@ impl ErrorEstimate {
         f64::from(self.samples).powi(2) / squares
     }
 
-    fn has(&self, (passes, samples): (usize, u32)) -> bool {
-        self.passes.len() >= passes && self.samples >= samples
+    /// Are there enough passes and samples to tell errors from?
+    fn is_known(&self) -> bool {
+        let of_group =
+            self.groups.sizes.iter().fold(0.0, |most: f64, &size| most.max(size)) * f64::from(self.samples);
+        self.passes.len() >= LEAST_PASSES && (self.samples >= LEAST_SAMPLES || of_group >= LEAST_OF_GROUP)
     }
 
     /// Standard error of each group's mean; `None` while that cannot be told.
     pub fn standard_errors(&self) -> Option<Vec<f64>> {
-        let least = if self.groups.columns.is_some() { LEAST_OF_GRID } else { LEAST_OF_EACH };
-        self.has(least).then(|| self.variances().into_iter().map(f64::sqrt).collect())
+        self.is_known().then(|| self.variances().into_iter().map(f64::sqrt).collect())
     }
 
     /// Mean of each group.

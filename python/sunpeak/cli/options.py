@@ -39,7 +39,7 @@ PictureGoal = Annotated[
         "--error",
         parser=parse_goal,
         metavar="PCT|class|dgp:…|ev:…",
-        help="Go on until the error (root mean square over blocks of 8 by 8 pixels) is so small (95 % confidence), "
+        help="Go on until the error (root mean square over blocks of about 3 degrees) is so small (95 % confidence), "
         "in percent of the mean, until the comfort class cannot change (class), or until the 95 % interval of DGP "
         "(dgp:0.005) or Ev (ev:1%) is so narrow.",
         rich_help_panel=SAMPLING,

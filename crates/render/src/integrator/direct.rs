@@ -3,7 +3,7 @@
 use super::{Integrator, Met, path::Path};
 use crate::accel::Hit;
 use crate::backlight::Backlight;
-use crate::guide::{Guide, Rates};
+use crate::guide::{GuideAt, Rates};
 use crate::light::{LightSample, at_infinity, power_heuristic};
 use crate::material::{Arrival, Emitter, Inside, Smooth, SmoothValue, reflect};
 use crate::shapes::Ray;
@@ -28,7 +28,7 @@ impl Integrator<'_> {
             smooth: &met.scattering.smooth,
             share: met.smooth_share(),
             is_last: self.is_last(path),
-            guide: self.guided(path, &met.scattering.smooth),
+            guide: met.guided(path),
             inside: path.inside,
             backlight: met.backlight,
         }
@@ -301,7 +301,7 @@ struct Receiver<'a, 'w> {
     share: f64,
     /// May no diffuse bounce follow?
     is_last: bool,
-    guide: Option<(&'a Guide, Rates)>,
+    guide: Option<(&'a GuideAt<'w>, Rates)>,
     /// Mist and antimatter around.
     inside: Inside,
     /// What is known of the light behind.
@@ -321,7 +321,7 @@ impl Receiver<'_, '_> {
     fn pdf(&self, direction: Vec3) -> f64 {
         let own = self.smooth.pdf(direction);
         match &self.guide {
-            Some((guide, rates)) => rates.own * own + guide.pdf(rates, self.arrival.point, direction),
+            Some((guide, rates)) => rates.own * own + guide.pdf(rates, direction),
             None => own,
         }
     }

@@ -2,9 +2,10 @@
 
 use crate::testing::Random;
 use crate::{RenderOptions, World, WorldOptions, trace_irradiance};
-use std::{path::PathBuf, sync::Arc};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use sunpeak_bsdf::{
-    PeakRule,
+    Bsdf, PeakRule,
     synthetic::{Basis, Fabric},
 };
 use sunpeak_core::{Control, Vec3, luminance};
@@ -15,7 +16,7 @@ const RUNS: u64 = 16;
 
 /// A closed box of 4 by 5 by 3 metres whose south side is a shade, a pane or both, under sun, sky and ground, sometimes with a
 /// house before it.
-fn room(random: &mut Random, folder: &std::path::Path) -> (String, Arc<sunpeak_bsdf::Bsdf>, PeakRule) {
+fn room(random: &mut Random, folder: &Path) -> (String, Arc<Bsdf>, PeakRule) {
     let mut between = |low: f64, high: f64| low + (high - low) * random.next();
     let bases = [
         Basis::KlemsQuarter,
@@ -76,10 +77,55 @@ fn estimate(world: &World, sensors: &[(Vec3, Vec3)], samples: u32, seed: u64) ->
     (0..sensors.len()).map(of).collect()
 }
 
+/// A room as it is, and without anything known beforehand.
+fn worlds(text: &str, bsdf: Arc<Bsdf>, peak: PeakRule, folder: &Path) -> [World; 2] {
+    let load = LoadOptions { cwd: Some(folder.to_path_buf()), ..LoadOptions::default() };
+    let scene = Scene::parse(text, "room.rad", &load).expect("a room");
+    let options = WorldOptions { peak, loaded: vec![(folder.join("cloth.xml"), bsdf)] };
+    let compile = || World::compile(&scene, &options).expect("compiles");
+    let mut plain = compile();
+    (plain.guide, plain.backlights) = (None, Default::default());
+    [compile(), plain]
+}
+
+/// A folder of this test's own.
+fn folder(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("sunpeak-{name}-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+#[test]
+fn a_wall_in_the_plane_of_a_shade_is_not_lit_by_it() {
+    let folder = folder("flush");
+    let mut random = Random(3);
+    for _ in 0..4 {
+        let (text, bsdf, peak) = room(&mut random, &folder);
+        // The room's front becomes a wall with the shade flush in it.
+        let front = text.find("cloth polygon").or_else(|| text.find("pane polygon")).expect("a front");
+        let y = -0.3_f64;
+        let text = text[..front].to_owned()
+            + &format!(
+                "cloth polygon cloth 0 0 12 3 {y} 1 1 {y} 1 1 {y} 2.5 3 {y} 2.5\n\
+                 wall polygon front 0 0 30 4 {y} 0 0 {y} 0 0 {y} 3 4 {y} 3 4 {y} 0 \
+                 3 {y} 1 3 {y} 2.5 1 {y} 2.5 1 {y} 1 3 {y} 1\n"
+            );
+        let [world, plain] = worlds(&text, bsdf, peak, &folder);
+        // In the plane, and as far from it as rounding puts points that rays meet.
+        let sensors =
+            [y, y.next_up(), y.next_down()].map(|y| (Vec3::new(0.5 + random.next() / 3.0, y, 1.7), Vec3::Y));
+        let ours = estimate(&world, &sensors, 128, 1 << 20);
+        let theirs = estimate(&plain, &sensors, 1024, 1 << 30);
+        for (sensor, (a, b)) in ours.into_iter().zip(theirs).enumerate() {
+            let error = a.1.hypot(b.1).hypot(0.002 * b.0);
+            assert!((a.0 - b.0).abs() < 4.0 * error, "sensor {sensor}: {a:?}, plain {b:?}\n{text}");
+        }
+    }
+}
+
 #[test]
 fn twenty_random_rooms_agree_with_plain_paths() {
-    let folder: PathBuf = std::env::temp_dir().join(format!("sunpeak-rooms-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).expect("a folder");
+    let folder = folder("rooms");
     let sensors = [
         (Vec3::new(2.0, 1.5, 0.01), Vec3::Z),
         (Vec3::new(0.01, 3.0, 1.5), Vec3::X),
@@ -89,12 +135,7 @@ fn twenty_random_rooms_agree_with_plain_paths() {
     let (mut sum, mut worst, mut gain) = (0.0, 0.0_f64, 0.0);
     for number in 0..ROOMS {
         let (text, bsdf, peak) = room(&mut random, &folder);
-        let load = LoadOptions { cwd: Some(folder.clone()), ..LoadOptions::default() };
-        let scene = Scene::parse(&text, "room.rad", &load).expect("a room");
-        let options = WorldOptions { peak, loaded: vec![(folder.join("cloth.xml"), bsdf)] };
-        let world = World::compile(&scene, &options).expect("compiles");
-        let mut plain = World::compile(&scene, &options).expect("compiles");
-        (plain.guide, plain.backlights) = (None, Default::default());
+        let [world, plain] = worlds(&text, bsdf, peak, &folder);
         let ours = estimate(&world, &sensors, 128, 1 << 20);
         let theirs = estimate(&plain, &sensors, 1024, 1 << 30);
         for (sensor, (a, b)) in ours.into_iter().zip(theirs).enumerate() {

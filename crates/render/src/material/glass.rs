@@ -38,8 +38,15 @@ impl Glass {
         let parallel = (refracted - self.index * cosine) / (refracted + self.index * cosine);
         Faces {
             reflectance: [perpendicular * perpendicular, parallel * parallel],
-            crossing: self.transmissivity.map(|t| t.powf(1.0 / refracted)),
+            crossing: self.crossing(1.0 / refracted),
         }
+    }
+
+    /// Fraction not absorbed along a way so many times as long as across.
+    fn crossing(&self, way: f64) -> Rgb {
+        let Rgb { x, y, z } = self.transmissivity;
+        // Most glass is grey, and powers are dear.
+        if x == y && y == z { Rgb::splat(x.powf(way)) } else { self.transmissivity.map(|t| t.powf(way)) }
     }
 
     /// Share that goes straight on, unpolarised.

@@ -1,0 +1,116 @@
+//! Where light comes into a room behind a shade: directions that diffuse surfaces try beside their own.
+//!
+//! Light that a shade scatters can be found by no shadow ray from the room; a path has to meet the shade and go on from there.
+//! Two things are known beforehand: where the shades are, and into which directions they scatter the sun, in a table without its
+//! peak extracted a thousandfold within one cell. So directions are drawn in part towards a random point of the shades, in part
+//! against the directions in which a shade's table sends the light of a sun, and the rest from the surface's own lobes. The density
+//! of the mixture is known, so nothing is biased (Veach 1997, section 9.2: one-sample model with the balance heuristic).
+
+mod shades;
+mod sun;
+
+use crate::shapes::Triangle;
+use shades::ShadesAt;
+pub(crate) use sun::ScatteredSun;
+use sunpeak_core::Vec3;
+
+/// Share of directions that go to the shades, and against the scattered suns. The rest, the surface's own, keeps every weight
+/// below 1/(1 - these) of what it would be without a guide.
+const TO_SHADES: f64 = 0.3;
+const AGAINST_SUNS: f64 = 0.2;
+
+/// With more triangles of shades than this, looking at each of them costs more than it brings.
+const MAX_TRIANGLES: usize = 32;
+
+/// With more pairs of sun and shade than this, likewise.
+const MAX_SCATTERED_SUNS: usize = 8;
+
+/// Directions worth trying from any diffuse surface.
+#[derive(Debug)]
+pub(crate) struct Guide {
+    shades: Vec<Triangle>,
+    suns: Vec<ScatteredSun>,
+}
+
+/// How many directions of each kind are drawn at a vertex, on average.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rates {
+    /// Of the surface's own lobes.
+    pub own: f64,
+    /// Towards the shades.
+    pub shades: f64,
+    /// Against the scattered suns.
+    pub suns: f64,
+}
+
+/// The guide as a point sees it.
+#[derive(Debug)]
+pub(crate) struct GuideAt<'g> {
+    guide: &'g Guide,
+    shades: ShadesAt<'g>,
+}
+
+impl Guide {
+    /// From the triangles of scattering, transmitting surfaces and the suns that they scatter; `None` if there is nothing to
+    /// guide to.
+    pub fn new(mut shades: Vec<Triangle>, mut suns: Vec<ScatteredSun>) -> Option<Self> {
+        suns.truncate(MAX_SCATTERED_SUNS);
+        if shades.len() > MAX_TRIANGLES {
+            shades.clear();
+        }
+        (!shades.is_empty() || !suns.is_empty()).then_some(Self { shades, suns })
+    }
+
+    /// As seen from a point.
+    pub fn at(&self, point: Vec3) -> GuideAt<'_> {
+        GuideAt { guide: self, shades: ShadesAt::new(&self.shades, point) }
+    }
+}
+
+impl GuideAt<'_> {
+    /// One direction in all.
+    pub fn one_direction(&self) -> Rates {
+        let shades = if self.guide.shades.is_empty() { 0.0 } else { TO_SHADES };
+        let suns = if self.guide.suns.is_empty() { 0.0 } else { AGAINST_SUNS };
+        Rates { own: 1.0 - shades - suns, shades, suns }
+    }
+
+    /// One direction each way.
+    pub fn one_each(&self) -> Rates {
+        let one_if = |is_there: bool| f64::from(u8::from(is_there));
+        Rates {
+            own: 1.0,
+            shades: one_if(!self.guide.shades.is_empty()),
+            suns: one_if(!self.guide.suns.is_empty()),
+        }
+    }
+
+    /// Draw a direction towards a shade.
+    pub fn sample_shades(&self, u: [f64; 3]) -> Option<Vec3> {
+        self.shades.sample(u)
+    }
+
+    /// Draw a direction against which a sun is scattered.
+    pub fn sample_suns(&self, u: [f64; 3]) -> Option<Vec3> {
+        let at = u[0] * self.guide.suns.len() as f64;
+        self.guide.suns.get(at as usize)?.sample([at.fract(), u[1], u[2]])
+    }
+
+    /// Density [1/sr] of the guided directions at these rates.
+    pub fn pdf(&self, rates: &Rates, direction: Vec3) -> f64 {
+        let suns = &self.guide.suns;
+        let against: f64 = suns.iter().map(|sun| sun.pdf(direction)).sum();
+        let against = if suns.is_empty() { 0.0 } else { rates.suns * against / suns.len() as f64 };
+        against + rates.shades * self.shades.pdf(direction)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_shades_there_is_no_guide() {
+        assert!(Guide::new(Vec::new(), Vec::new()).is_none());
+    }
+}
