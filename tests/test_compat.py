@@ -9,8 +9,9 @@ import pytest
 
 import sunpeak as sp
 from conftest import CommandLine
-from sunpeak.compat import numbers, options, quality
+from sunpeak.compat import numbers, options, quality, radiance
 from sunpeak.compat.install import install
+from sunpeak.compat.programs import main as run_program
 
 ROOM = """void plastic white 0 0 5 .5 .5 .5 0 0
 void light lamp 0 0 3 10 10 10
@@ -114,7 +115,6 @@ def test_an_instance_reads_our_octrees(room: Path) -> None:
         (["rpict", "-x", "0", "room.oct"], "a picture needs at least one pixel each way"),
         (["rpict", "-vth", "-vh", "200", "room.oct"], "the view cannot be used"),
         (["rtrace"], "rtrace: missing octree argument"),
-        (["rtrace", "-ort", "room.oct"], "-ort: 't' asks for the tree of rays"),
         (["rtrace", "-fz", "room.oct"], "command line error at '-fz'"),
         (["rtrace", "-fac", "-oL", "room.oct"], "-fc: expected -ov, -or or -ox"),
         (["rtrace", "-ff", "-os", "room.oct"], "-os: names are text; expected -fa"),
@@ -136,7 +136,26 @@ def test_mistakes_are_said_in_a_line(command: list[str], says: str, room: Path) 
         assert done.returncode == 1
         assert says in done.stderr
         return
-    program(*command, folder=room, data=b"1 1 1 0 0 1\n", expect=1, says=says)
+    # As Radiance's programs: 2 where the system refuses a file.
+    is_system = "No such file" in says or "cannot open" in says
+    program(*command, folder=room, data=b"1 1 1 0 0 1\n", expect=2 if is_system else 1, says=says)
+
+
+@pytest.mark.parametrize(
+    ("command", "says"),
+    [
+        (["rtrace", "-ort", "room.oct"], "-ort: 't' asks for the tree of rays, which random paths have not"),
+        (["rtrace", "-pXYZ", "room.oct"], "-pXYZ: Sunpeak's colours are Radiance's RGB alone"),
+        (["rpict", "-cs", "18", "-co+", "room.oct"], "-co+: Sunpeak's colours are Radiance's RGB alone"),
+        (["evalglare", "-I", "1", "2", "3", "x.hdr"], "-I: Sunpeak's evalglare does not do this"),
+    ],
+)
+def test_what_only_radiance_does_is_said_where_it_is_missing(
+    command: list[str], says: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(radiance, "find_program", lambda name: None)
+    assert run_program(command) == 1
+    assert capsys.readouterr().err == f"{command[0]}: {says} (Radiance's {command[0]} does, and is not on PATH)\n"
 
 
 def test_rays_that_are_none_and_numbers_that_are_none(room: Path) -> None:

@@ -93,6 +93,7 @@ SPECTRA = (
     *("rect_fixture.rad", "spectral_objs.rad"),
 )
 MIST = (*WALLS, "closed_end.rad", "gymbal.rad", "mist.rad", "spotlights.rad", "spotcones.rad")
+BIG_SUN = "void light sol 0 0 3 2.5e4 2.5e4 2.5e4\nsol source bigsun 0 0 4 -0.9338 -0.35 0.001 1\n"
 LAMP_THAT_NOBODY_LOOKS_FOR = (
     "rect_fixture.rad",
     "lum_dist light lum_bright\n0\n0\n3\t20 20 20",
@@ -171,7 +172,17 @@ CASES = [
         (*WALLS, "rect_opening.rad", "front_cap.rad", "illum_tfunc.rad"),
         "-vf inside.vf",
         1,
-        "void light sol 0 0 3 2.5e4 2.5e4 2.5e4\nsol source bigsun 0 0 4 -0.9338 -0.35 0.001 1\n",
+        BIG_SUN,
+    ),
+    # The same with a dark reveal, so that the sun alone shines on the window.
+    Case(
+        "tfunc_dark_reveal",
+        "radiance-renders",
+        (*WALLS, "rect_opening.rad", "front_cap.rad", "illum_tfunc.rad"),
+        "-vf inside.vf",
+        1,
+        BIG_SUN,
+        changes=(("rect_opening.rad", "genprism wall_mat", "genprism black_outside"),),
     ),
     rif("trans", "inside.vf", *WALLS, "rect_opening.rad", "front_cap.rad", "ballcompare.rad", "spotlights.rad",
         "rect_fixture.rad", "trans_pane.rad", "sunset_sky.rad"),

@@ -222,6 +222,33 @@ def test_a_program_that_we_lack_is_radiances(both: dict[str, Programs], tmp_path
     assert done.stdout.split()[-4:] == ["0", "0", "1", "1"]
 
 
+def test_what_ours_do_not_do_is_left_to_radiances(both: dict[str, Programs], tmp_path: Path) -> None:
+    """The tree of rays, XYZ, spectra; octrees that name files, and frozen ones, whose patterns lie beside them."""
+    (tmp_path / "half.cal").write_text("half = .5;\n")
+    scene = "void brightfunc p 2 half half.cal 0 0\np glass pane 0 0 3 .9 .9 .9\n" + MIRRORS
+    (tmp_path / "scene.rad").write_text(scene + "pane polygon window 0 0 12 4 0 1 6 0 1 6 1 1 4 1 1\n")
+    (tmp_path / "rays").write_text("4.5 .5 3 0 .1 -1\n6.5 .5 3 .05 0 -1\n")
+    lines = [
+        "oconv scene.rad > scene.oct",
+        "oconv -f - < scene.rad > frozen.oct",
+        "rtrace -h -w- -ab 0 -oTdwv~ scene.oct < rays > tree",
+        "rtrace -h -w- -ab 0 -otLm frozen.oct < rays >> tree",
+        "rtrace -h -w- -ab 0 -pXYZ scene.oct < rays > xyz",
+        "rtrace -h -w- -ab 0 -cs 6 -co+ scene.oct < rays > spectra",
+        "rpict -w- -ps 1 -pj 0 -pXYZ -x 4 -y 4 -vp 4.5 .5 3 -vd 0 0 -1 -vu 0 1 0 scene.oct | getinfo - > picture",
+    ]
+    for name, programs in both.items():
+        folder = tmp_path / name
+        folder.mkdir()
+        for file in ("half.cal", "scene.rad", "rays"):
+            (folder / file).write_bytes((tmp_path / file).read_bytes())
+        programs.run("\n".join(lines), folder)
+    for file in ("tree", "xyz", "spectra", "picture"):
+        ours, theirs = ((tmp_path / name / file).read_bytes() for name in ("sunpeak", "radiance"))
+        assert ours == theirs, file
+    assert b"\n\t" in (tmp_path / "sunpeak/tree").read_bytes()
+
+
 def test_vwrays_writes_what_radiances_does(tutorial: dict[str, Path], both: dict[str, Programs]) -> None:
     lines = [
         "-vta -vh 180 -vv 180 -x 7 -y 7",
@@ -304,6 +331,65 @@ def test_what_comes_by_mirrors_and_the_rest(both: dict[str, Programs], tmp_path:
     ours, theirs = answers["sunpeak"], answers["radiance"]
     assert ours[:, :4] == pytest.approx(theirs[:, :4], rel=1e-4)
     assert ours[:, 4:] == pytest.approx(theirs[:, 4:], rel=0.02, abs=0.01)
+
+
+FIELDS = """
+void plastic red 0 0 5 .5 .1 .1 0 0
+void texfunc waves 6 .1*sin(9*Px) .05 .1*Py . -rz 30 0 0
+waves plastic wavy 0 0 5 .5 .5 .5 0 0
+void glass pane 0 0 3 .8 .8 .8
+waves dielectric block 0 0 5 .9 .9 .9 1.5 0
+void glow shine 0 0 4 1 2 3 0
+void glow night 0 0 4 .001 .001 .001 0
+red mesh smooth 5 smooth.rtm -t 0 0 1 0 0
+red polygon p0 0 0 12 2 0 0 3 0 0 3 1 0 2 1 0
+wavy polygon p1 0 0 12 4 0 0 5 0 0 5 1 0 4 1 0
+pane polygon p2 0 0 12 6 0 0 7 0 0 7 1 0 6 1 0
+block sphere p3 0 0 4 8.5 .5 0 .5
+shine polygon p4 0 0 12 10 0 0 11 0 0 11 1 0 10 1 0
+wavy bubble p5 0 0 4 12.5 .5 0 .5
+night source sky 0 0 4 0 .1 1 120
+"""
+SMOOTH = """
+v 0 0 0\nv 1 0 0\nv 0 1 0\nvn .2 .1 1\nvn -.3 0 1\nvn 0 .4 1\nvt .1 .2\nvt .9 .3\nvt .2 .8
+usemtl red\nf 1/1/1 2/2/2 3/3/3
+"""
+
+
+@pytest.mark.parametrize("form", ["a", "f", "d"])
+def test_every_field_of_rtrace(form: str, both: dict[str, Programs], tmp_path: Path) -> None:
+    """All letters of `-o` but `W` in each format: normals of both sides, local coordinates, names."""
+    (tmp_path / "scene.rad").write_text(FIELDS)
+    (tmp_path / "smooth.obj").write_text(SMOOTH)
+    rays = [f"{x + 0.3} .4 {3 * side} 0 .02 {-side}" for x in (0, 2, 4, 6, 8, 10, 12, 14) for side in (1, -1)]
+    kind = {"a": np.float64, "f": np.float32, "d": np.float64}[form]
+    data = np.array([ray.split() for ray in rays], dtype=kind)
+    (tmp_path / "rays").write_bytes(("\n".join(rays) + "\n").encode() if form == "a" else data.tobytes())
+    words = ["odvVrRxXlLcpnNw", *(["soLmM~v"] if form == "a" else [])]
+    lines = ["obj2mesh smooth.obj smooth.rtm", "oconv -w scene.rad > scene.oct"]
+    lines += [f"rtrace -w- -h -ab 0 -f{form}{form} -o{word} scene.oct < rays > $OUT.{word}" for word in words]
+    for name, programs in both.items():
+        programs.run("\n".join([f"OUT={name}", *lines]), tmp_path)
+    for word in words:
+        ours, theirs = (tmp_path / f"{name}.{word}" for name in ("sunpeak", "radiance"))
+        if form != "a":
+            mine, other = (np.fromfile(file, dtype=kind) for file in (ours, theirs))
+            assert mine.shape == other.shape, word
+            assert mine == pytest.approx(other, rel=1e-4, abs=1e-5), word
+            continue
+        columns = [[line.split() for line in file.read_text().splitlines()] for file in (ours, theirs)]
+        assert len(columns[0]) == len(columns[1]) == len(rays)
+        for ray, mine, other in zip(rays, *columns, strict=True):
+            pairs = list(zip(mine, other, strict=True))
+            assert all(same(*pair) for pair in pairs), (word, ray, pairs)
+
+
+def same(mine: str, other: str) -> bool:
+    """Whether two words are the same number, nearly, or the same name."""
+    try:
+        return bool(np.isclose(float(mine), float(other), rtol=1e-4, atol=1e-5))
+    except ValueError:
+        return mine == other
 
 
 RIF = """

@@ -1,9 +1,11 @@
 """The expression language against `rcalc`, in one run."""
 
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy import special
 
 import sunpeak as sp
 from conftest import Radiance
@@ -82,6 +84,39 @@ def test_expressions_and_library(radiance: Radiance) -> None:
     off = np.abs(ours - theirs) / np.maximum(np.abs(theirs), 1)
     worst = {texts[i]: float(off[:, i].max()) for i in range(len(texts)) if off[:, i].max() > 1e-12}
     assert not worst, worst
+
+
+# Functions that Radiance's renderers have and `rcalc` has not, of x and y.
+OF_RENDERERS = """
+erf(x) erfc(x) noise3(5*x,7*y,3) noise3x(5*x,7*y,3) noise3y(5*x,7*y,3) noise3z(5*x,7*y,3) noise3a(5*x,7*y,3)
+noise3b(5*x,7*y,3) noise3c(5*x,7*y,3) noise3d(2,5*x,7*y,3) fnoise3(5*x,7*y,3) turbulence(5*x,7*y,3,.01)
+turbulencex(5*x,7*y,3,.01) turbulencey(5*x,7*y,3,.01) turbulencez(5*x,7*y,3,.01)
+"""
+
+
+def test_functions_of_the_renderers(radiance: Radiance, tmp_path: Path) -> None:
+    """As patterns of what shines, so that `rtrace` prints them; its colours are single floats."""
+    functions = OF_RENDERERS.split()
+    scene = "".join(
+        f"void brightfunc p{i} 2 {text}+5 f.cal 0 0\np{i} glow g{i} 0 0 4 1 1 1 0\n"
+        f"g{i} polygon s{i} 0 0 12 0 0 {-i} 1 0 {-i} 1 1 {-i} 0 1 {-i}\n"
+        for i, text in enumerate(functions)
+    )
+    (tmp_path / "f.cal").write_text("x = Px; y = Py;\n")
+    places = np.random.default_rng(4).random((12, 2))
+    octree = radiance.octree(tmp_path / "s.oct", text=scene, folder=tmp_path)
+    rays = [[x, y, 0.5 - i, 0, 0, -1] for i in range(len(functions)) for x, y in places]
+    theirs = radiance.rtrace(octree, rays, folder=tmp_path)[:, 0].reshape(-1, len(places)).T
+    texts = [re.sub(r"\bx\b", "$1", re.sub(r"\by\b", "$2", text)) for text in functions]
+    assert sp.evaluate(texts, places) + 5 == pytest.approx(theirs, rel=2e-6)
+
+
+def test_bessel_functions() -> None:
+    """Radiance's programs have them only where they were built so: by SciPy."""
+    x = np.linspace(0.05, 30, 50)
+    texts = [*(f"{name}($1)" for name in ("j0", "j1", "y0", "y1")), "jn(3,$1)", "yn(4,$1)"]
+    known = [special.j0(x), special.j1(x), special.y0(x), special.y1(x), special.jn(3, x), special.yn(4, x)]
+    assert sp.evaluate(texts, x[:, None]) == pytest.approx(np.transpose(known), rel=1e-12, abs=1e-12)
 
 
 def test_every_function_of_rayinit_is_ours(radiance: Radiance) -> None:

@@ -113,6 +113,7 @@ def words(source: str) -> list[str]:
         ("genblinds m b .05 1 1.2 x 30", "expected the number of slats"),
         ("genblinds m", "expected genblinds material name"),
         ("genrev m r t nosuch(t) 2", "nosuch"),
+        ("genworm m w 0 s 0 .1 5", '"s" is not defined'),
         ("gensurf m s s t 1 2 2 -s", "smoothing (-s) is not done inside"),
         ("genrev m r t '1 +' 2", "genrev: "),
         ("genrev m r t 'f(t)' 2 -e 'f(x)=f(x)+1'", "genrev: "),

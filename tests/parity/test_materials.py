@@ -147,6 +147,24 @@ def test_thin_mist_in_a_spotlight(radiance: Radiance, tmp_path: Path) -> None:
     np.testing.assert_allclose(ratio, 1.0, atol=0.03)
 
 
+def test_mist_between_a_floor_and_the_sky() -> None:
+    """Light is scattered many times in a slab that absorbs nothing, and goes back and forth between it and a floor.
+
+    The slab's share of a Lambertian field, isotropic scattering: Heaslet and Warming 1965, as heat through a grey gas
+    between black plates, which is the same equation (Modest, Radiative Heat Transfer, table 14.1). What the floor gives
+    back is Lambertian again, so that the sum over all its turns is a geometric series.
+    """
+    passes, floor = np.array([0.7040, 0.5532, 0.3016]), np.array([0.7, 0.5, 0.7])
+    scene = sp.Scene.parse(
+        "void glow shine 0 0 4 1 1 1 0\nshine source sky 0 0 4 0 0 1 180\n"
+        "void plastic grey 0 0 5 .7 .5 .7 0 0\ngrey ring floor 0 0 8 0 0 0 0 0 1 0 2000\n"
+        "void mist fog 0 0 7 .5 1 3 1 1 1 0\n!genbox fog slab 1000 1000 1 | xform -t -500 -500 .01\n"
+    )
+    given = {"irradiance": True, "samples": 1 << 16, "max_bounces": None, "seed": 1}
+    lit = sp.trace(scene, np.array([[0, 0, 1e-3]]), np.array([[0.0, 0, 1]]), **given)[0]
+    np.testing.assert_allclose(lit / np.pi, passes / (1 - floor * (1 - passes)), rtol=0.01)
+
+
 def test_a_lamp_behind_mist(radiance: Radiance, tmp_path: Path) -> None:
     """What scatters, green and blue, takes nothing of Radiance's shadow rays, and all by Beer's law of its other rays.
 

@@ -30,8 +30,8 @@ impl PyWorld {
         Ok(Self(Arc::new(world)))
     }
 
-    /// What rays meet first: distances (n,), points and front normals (n, 3), indices of surfaces (n,); infinity, NaN and -1 where nothing is
-    /// met.
+    /// What rays meet first: distances (n,), points (n, 3), normals of the front, without smoothing, and bent (n, 3), local coordinates and
+    /// 0 (n, 3), indices of surfaces (n,); infinity, NaN and -1 where nothing is met.
     fn first_surfaces<'py>(
         &self,
         py: Python<'py>,
@@ -41,14 +41,20 @@ impl PyWorld {
         let (points, towards) = (vectors(&origins, "origins")?, vectors(&directions, "directions")?);
         let rays: Vec<_> = points.into_iter().zip(towards).collect();
         let found = py.detach(|| first_surfaces(&self.0, &rays)).or_raise()?;
-        let place = |part: fn(&FirstSurface) -> Vec3| -> Vec<Vec3> {
-            found.iter().map(|first| first.as_ref().map_or(Vec3::NAN, part)).collect()
+        let part = |part: fn(&FirstSurface) -> Vec3| {
+            let of_ray = |first: &Option<FirstSurface>| first.as_ref().map_or(Vec3::NAN, part);
+            rows(py, &found.iter().map(of_ray).collect::<Vec<_>>())
         };
         let distances =
             found.iter().map(|first| first.map_or(f64::INFINITY, |first| first.distance)).collect();
         let surfaces = found.iter().map(|first| first.map_or(-1, |first| first.surface as i64)).collect();
-        let (points, normals) = (place(|first| first.point), place(|first| first.normal));
-        Ok((numbers(py, distances), rows(py, &points), rows(py, &normals), PyArray1::from_vec(py, surfaces)))
+        Ok((
+            numbers(py, distances),
+            part(|first| first.point),
+            [part(|first| first.normal), part(|first| first.flat_normal), part(|first| first.bent_normal)],
+            part(|first| Vec3::new(first.local[0], first.local[1], 0.0)),
+            PyArray1::from_vec(py, surfaces),
+        ))
     }
 
     /// What the first surfaces mirror and let through: points, mirrored shares, their directions, straight shares (n, 3), and which show
@@ -79,7 +85,7 @@ impl PyWorld {
 }
 
 /// Distances, points, normals, surfaces.
-type FirstSurfaces<'py> = (Numbers<'py>, Rows<'py>, Rows<'py>, Bound<'py, PyArray1<i64>>);
+type FirstSurfaces<'py> = (Numbers<'py>, Rows<'py>, [Rows<'py>; 3], Rows<'py>, Bound<'py, PyArray1<i64>>);
 
 /// Points, mirrored shares, mirrored directions, straight shares, whether glass is plane.
 type FirstDeltaRows<'py> = (Rows<'py>, Rows<'py>, Rows<'py>, Rows<'py>, Bound<'py, PyArray1<bool>>);

@@ -346,7 +346,9 @@ impl<'w> Met<'w> {
     /// Where light that is scattered starts: at the surface, and beyond what a table with thickness stands for.
     fn origins(&self) -> impl Iterator<Item = Vec3> {
         let far = match self.material {
-            Some(Material::Table(table)) if table.is_proxy() => Some(self.straight_origin()),
+            Some(Material::Table(table)) if table.thickness(&self.arrival) != 0.0 => {
+                Some(self.straight_origin())
+            }
             _ => None,
         };
         std::iter::once(self.arrival.point).chain(far)
@@ -355,7 +357,7 @@ impl<'w> Met<'w> {
     /// Where a ray that goes straight on starts: beyond the geometry that a table with thickness stands for.
     fn straight_origin(&self) -> Vec3 {
         match self.material {
-            Some(Material::Table(table)) => self.arrival.point + table.offset(self.arrival.normal),
+            Some(Material::Table(table)) => self.arrival.point + table.offset(&self.arrival),
             _ => self.arrival.point,
         }
     }

@@ -3,19 +3,25 @@
 use crate::accel::Hit;
 use crate::shapes::Ray;
 use crate::world::{Facing, Seen};
-use crate::{World, material::EmitterKind, material::Material};
+use crate::{World, material::Arrival, material::EmitterKind, material::Material};
 use rayon::prelude::*;
 use sunpeak_core::{Error, Result, Rgb, Vec3};
 
 /// The surface that a ray meets first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FirstSurface {
-    /// From the ray's origin [m].
+    /// From the ray's origin [m], infinity for a `source`.
     pub distance: f64,
-    /// Where it is met.
+    /// Where it is met; of a `source` nowhere (NaN), and its normals face the ray.
     pub point: Vec3,
-    /// Unit normal of the surface's front.
+    /// Unit normal of the surface's front, as a mesh smooths it.
     pub normal: Vec3,
+    /// The same without smoothing.
+    pub flat_normal: Vec3,
+    /// The normal as textures and smoothing bend it, on the ray's side where the material scatters on both sides alike.
+    pub bent_normal: Vec3,
+    /// Local coordinates of a mesh; zero of other surfaces.
+    pub local: [f64; 2],
     /// Index in [`Scene::surfaces`](sunpeak_scene::Scene::surfaces).
     pub surface: usize,
 }
@@ -35,8 +41,8 @@ pub struct FirstDeltas {
     pub is_plane_glass: bool,
 }
 
-/// The first surface along each ray, given by origin and direction (of any length); `None` where there is none. An `illum` without
-/// anything to see instead is passed, as by a view ray.
+/// The first surface along each ray, given by origin and direction (of any length), or the `source` that it sees; `None` where there is
+/// none. An `illum` without anything to see instead is passed, as by a view ray.
 ///
 /// # Errors
 /// A ray that is not finite or has no direction.
@@ -78,20 +84,51 @@ fn first_hit(world: &World, ray: Ray) -> Option<(Hit, Ray)> {
 }
 
 fn first_surface(world: &World, ray: Ray) -> Option<FirstSurface> {
-    let (hit, segment) = first_hit(world, ray)?;
-    let arrival = world.arrival(&hit, &segment);
+    let Some((hit, segment)) = first_hit(world, ray) else { return first_source(world, ray.direction) };
+    let (seen, arrival) = seen(world, &hit, &segment);
     Some(FirstSurface {
         distance: arrival.point.distance(ray.origin),
         point: arrival.point,
-        normal: arrival.normal,
+        normal: world.arrival(&hit, &segment).normal,
+        flat_normal: arrival.flat_normal,
+        bent_normal: bent_normal(&seen, &arrival),
+        local: arrival.local,
         surface: world.surfaces[hit.object as usize] as usize,
     })
 }
 
+fn first_source(world: &World, direction: Vec3) -> Option<FirstSurface> {
+    let source = world.distant.get(world.distant.seen(direction)?);
+    Some(FirstSurface {
+        distance: f64::INFINITY,
+        point: Vec3::NAN,
+        normal: -direction,
+        flat_normal: -direction,
+        bent_normal: -direction,
+        local: [0.0; 2],
+        surface: source.surface as usize,
+    })
+}
+
+/// As a view ray sees it; of a mixture of materials the larger share.
+fn seen<'w>(world: &'w World, hit: &Hit, ray: &Ray) -> (Seen<'w>, Arrival) {
+    let mut inside = world.inside_at(ray);
+    world.meet(hit, ray, true, &mut inside, [0.0; 2], &mut || 0.5)
+}
+
+/// Radiance turns the normal to the ray where a surface scatters; solids of glass keep it, mirrors and what shines have a front only.
+fn bent_normal(seen: &Seen<'_>, arrival: &Arrival) -> Vec3 {
+    match seen {
+        Seen::Surface(Material::Dielectric(_)) => arrival.normal,
+        Seen::Surface(Material::Mirror(_)) | Seen::Emitter(_) if arrival.at_front() => arrival.normal,
+        Seen::Surface(Material::Mirror(_)) | Seen::Emitter(_) | Seen::Void => arrival.flat_normal,
+        Seen::Surface(_) => arrival.facing_normal(),
+    }
+}
+
 fn deltas(world: &World, ray: Ray) -> Option<FirstDeltas> {
     let (hit, segment) = first_hit(world, ray)?;
-    let mut inside = world.inside_at(&segment);
-    let (seen, arrival) = world.meet(&hit, &segment, true, &mut inside, [0.0; 2], &mut || 0.5);
+    let (seen, arrival) = seen(world, &hit, &segment);
     let Seen::Surface(material) = seen else { return None };
     let is_plane = matches!(world.object(&hit).facing, Facing::Flat(_)) && arrival.bend == Vec3::ZERO;
     let is_glass = matches!(material, Material::Glass(_) | Material::Mirror(_) | Material::Dielectric(_));
@@ -125,6 +162,14 @@ mod tests {
         let ball = found[1].expect("the ball");
         assert!((ball.distance - 1.0).abs() < 1e-12 && ball.normal.distance(-Vec3::Z) < 1e-12);
         assert_eq!((ball.surface, found[2]), (1, None));
+        let scene = Scene::parse(
+            &format!("{text}\nseen source sky 0 0 4 0 0 1 180"),
+            "t.rad",
+            &LoadOptions::default(),
+        );
+        let world = World::compile(&scene.expect("a scene"), &Default::default()).expect("a world");
+        let sky = first_surfaces(&world, &[(at, Vec3::X)]).expect("rays")[0].expect("the sky");
+        assert_eq!((sky.distance, sky.surface), (f64::INFINITY, 3));
         assert!(first_surfaces(&world, &[(at, Vec3::ZERO)]).is_err());
     }
 }

@@ -189,7 +189,7 @@ impl World {
             Material::Dielectric(solid) => Pass::Refracted(solid),
             Material::Varying(varying) => self.pass_varying(varying, arrival, target),
             // Sampled paths pass it as well where they come from the geometry's side.
-            Material::Table(table) if table.is_proxy() => {
+            Material::Table(table) if table.thickness(arrival) != 0.0 => {
                 let finds = table.rule != PeakRule::Split || table.is_passed(arrival, false);
                 Pass::Straight(Rgb::ONE, !finds)
             }

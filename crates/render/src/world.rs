@@ -293,7 +293,7 @@ impl World {
             Material::Emitter(emitter) => fault_of(&emitter.patterns),
             Material::Ward(ward) => ward.fault(),
             Material::Ashikhmin(m) => fault_of_orientation(&m.orientation),
-            Material::Table(table) => fault_of_orientation(&table.up),
+            Material::Table(table) => table.fault(),
             Material::Function(function) => function.field.fault(),
             Material::Wgmd(wgmd) => wgmd.fault(),
             Material::Prism(prism) => prism.field.fault(),

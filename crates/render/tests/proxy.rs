@@ -55,6 +55,21 @@ fn view_rays_see_the_geometry_and_scattered_ones_the_table() {
 }
 
 #[test]
+fn thickness_may_vary() {
+    // On one half of the lower proxy light starts beyond the sheet, on the other before it, in its shadow.
+    let varying = PROXIES.replace("lower 6 1.01 ", "lower 6 if(Px,1.01,.2) ");
+    let world = world_with(diffuser(), PeakRule::Split, &format!("{UNIFORM_SKY}{SHEET}{varying}"));
+    let value = irradiance(&world, Vec3::ZERO, Vec3::Z, &samples(1 << 13));
+    assert_close("half", value, 0.15 * PI, 0.03);
+    // Where there is none the table is seen.
+    let varying = PROXIES.replace("lower 6 1.01 ", "lower 6 if(Px,1.01,0) ");
+    let world = world_with(diffuser(), PeakRule::Split, &format!("{UNIFORM_SKY}{varying}"));
+    let seen = |x| radiance(&world, Vec3::new(x, 0.0, 0.0), Vec3::Z, &samples(1 << 12));
+    assert_eq!(seen(0.5), Rgb::ONE);
+    assert_close("table", seen(-0.5), 0.3, 0.02);
+}
+
+#[test]
 fn shadow_rays_see_the_geometry_and_nothing_counts_twice() {
     let sun = sun(20.0);
     let with = |peak, between: &str| {

@@ -96,7 +96,9 @@ mod tests {
                     white polygon b 0 0 9 0 0 0 1 0 0 0 1 0\nvoid metall grey 0 0 5 1 1 1 0 0\n\
                     grey sphere c 0 0 4 0 0 0 1\ngrey sphere d 0 0 4 0 0 0 1\nvoid polygon e 0 0 6 0 0 0 1 0 0\n\
                     void polygon f 0 0 9 0 0 0 1 0 0 2 0 0\nvoid polygon g 0 0 12 0 0 0 1 0 0 1 1 1 0 1 0\n\
-                    !nosuch 1\n!genbox none box 1 1 1\nvoid light lamp 0 0 3 1 1 1";
+                    !nosuch 1\n!genbox none box 1 1 1\nvoid light lamp 0 0 3 1 1 1\n\
+                    none ring h 0 0 7 0 0 0 0 0 1 0\nwhite sphere i 0 0 4 0 0 0 0\nnone mesh j 1 none.rtm 0 0\n\
+                    white plastic pale 0 0 3 .5 .5 .5\npale sphere k 0 0 3 0 0 0\nnowhere sphere l 0 0 3 0 0 0";
         let source = Source::Text { name: "t.rad".into(), text: text.into(), directory: ".".into() };
         let check = Scene::check(&[source], &LoadOptions::default());
         let errors: Vec<_> = check.errors.iter().map(ToString::to_string).collect();
@@ -107,12 +109,19 @@ mod tests {
             "t.rad:5:1: undefined modifier \"grey\"",
             "t.rad:7:1: wrong number of arguments of polygon \"e\"",
             "t.rad:11:1: undefined modifier \"none\"",
+            "t.rad:13:1: wrong number of arguments of ring \"h\"",
+            "t.rad:15:1: cannot find the file \"none.rtm\"",
+            "t.rad:16:1: wrong number of arguments of plastic \"pale\"",
+            "t.rad:17:1: wrong number of arguments of sphere \"k\"",
+            "t.rad:18:1: undefined modifier \"nowhere\"",
+            "t.rad:18:1: wrong number of arguments of sphere \"l\"",
         ];
         assert_eq!(errors.len(), expected.len(), "{errors:#?}");
         for (error, expected) in errors.iter().zip(expected) {
             assert!(error.starts_with(expected), "{error}");
         }
-        let expected = ["\"f\" has no area", "\"g\" has a vertex", "nothing uses light \"lamp\""];
+        let expected =
+            ["\"f\" has no area", "\"g\" has a vertex", "\"i\" has no radius", "nothing uses light \"lamp\""];
         assert_eq!(check.warnings.len(), expected.len(), "{:#?}", check.warnings);
         for (warning, expected) in check.warnings.iter().zip(expected) {
             assert!(warning.contains(expected), "{warning}");

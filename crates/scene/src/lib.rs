@@ -36,7 +36,7 @@ pub use load::{Source, load_primitives};
 pub use picture::{BlockErrors, ExactSource, Picture, SpectralPicture};
 pub use scene::{
     Anisotropy, BsdfMaterial, ComponentModifier, FunctionMaterial, FunctionValue, Material, Medium, Mesh,
-    Modifier, ModifierId, ModifierKind, Orientation, Pattern, Scene, Shape, Surface, Ward, Weight,
+    Modifier, ModifierId, ModifierKind, Orientation, Pattern, Scene, Shape, Surface, Thickness, Ward, Weight,
     WgmdMaterial,
 };
 pub use text::{Font, Text};

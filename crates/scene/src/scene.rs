@@ -356,13 +356,27 @@ pub enum ComponentModifier {
     Named(Option<ModifierId>),
 }
 
+/// How far the geometry reaches behind a surface that stands for it (negative: before it) [m]; 0: there is none.
+#[derive(Clone, Debug)]
+pub enum Thickness {
+    /// The same everywhere.
+    Fixed(f64),
+    /// An expression of the ray that arrives.
+    Varying {
+        /// One expression.
+        field: Arc<Field>,
+        /// What the transform multiplies it with.
+        scale: f64,
+    },
+}
+
 /// `BSDF` and `aBSDF`.
 #[derive(Clone, Debug)]
 pub struct BsdfMaterial {
     /// `true` for `aBSDF`: the material for peak extraction.
     pub extract_peak: bool,
-    /// Thickness for proxy geometry (0: none) [m], always 0 for `aBSDF`.
-    pub thickness: f64,
+    /// Thickness for proxy geometry, always 0 for `aBSDF`.
+    pub thickness: Thickness,
     /// The XML file, found.
     pub file: PathBuf,
     /// Up vector.

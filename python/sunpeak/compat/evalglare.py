@@ -17,7 +17,7 @@ import numpy.typing as npt
 from sunpeak import _core
 from sunpeak._core import InputError
 from sunpeak.comfort import glare
-from sunpeak.compat.options import CommandLine, Table, expand_arguments, parse
+from sunpeak.compat.options import CommandLine, NotDoneError, Table, expand_arguments, parse
 from sunpeak.compat.views import view_of
 from sunpeak.files import whole_file
 from sunpeak.glare_report import GlareReport, GlareSource
@@ -34,6 +34,8 @@ TABLE = Table(
     idle=frozenset({"-s", "-C", "-G"}),
     has_view=True,
 )
+LEFT = frozenset({"-I", "-B", "-A", "-g"})
+"""Options that Sunpeak does not do."""
 LARGEST_FACTOR = 100.0
 """`-b` up to this is a factor on a mean luminance, above it a luminance [cd/m²]."""
 TASK_FACTOR = 5.0
@@ -59,7 +61,10 @@ CHECK_COLOURS = ((1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (1, 0, 1), (0, 1, 1
 
 def run(arguments: list[str]) -> int:
     """Evaluate a picture, and print what was found."""
-    line = parse(expand_arguments(arguments), TABLE, {"-w": True})
+    words = expand_arguments(arguments)
+    if left := LEFT.intersection(words):
+        raise NotDoneError(f"{' '.join(sorted(left))}: Sunpeak's evalglare does not do this")
+    line = parse(words, TABLE, {"-w": True})
     if line.is_on("-v"):
         sys.stdout.write(VERSION + "\n")
         return 1

@@ -89,9 +89,11 @@ def show_cube(data: bytes, name: str) -> None:
     bounds = octree.decode(data, name).scene().bounds()
     if bounds is None:
         raise InputError(f"{name}: an octree without surfaces: no dimensions")
-    edge = max(high - low for low, high in zip(*bounds, strict=True)) + 2 * CUBE_MARGIN
-    corner = [(low + high - edge) / 2 for low, high in zip(*bounds, strict=True)]
-    sys.stdout.write(f"{' '.join(f'{number:.6g}' for number in [*corner, edge])}\n")
+    lows, highs = [low - CUBE_MARGIN for low in bounds[0]], [high + CUBE_MARGIN for high in bounds[1]]
+    spans = [high - low for low, high in zip(lows, highs, strict=True)]
+    edge = max(spans)
+    corner = [low - (edge - span) / 2 for low, span in zip(lows, spans, strict=True)]
+    sys.stdout.write(f"{' '.join(f'{number:.12g}' for number in [*corner, edge])}\n")
 
 
 def replace(lines: list[str], assignments: Iterable[str]) -> list[str]:

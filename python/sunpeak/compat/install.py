@@ -7,13 +7,13 @@ from pathlib import Path
 
 from sunpeak._core import InputError
 from sunpeak.compat.programs import PROGRAMS
+from sunpeak.compat.radiance import MARK, is_ours
 from sunpeak.files import whole_file
 
 SCRIPT = """#!/bin/sh
 # {name}, on Sunpeak's renderer ({mark}). The folder of this file goes before Radiance's on PATH.
 exec {python} -P -m sunpeak.compat {name} "$@"
 """
-MARK = "written by `sunpeak compat install`"
 EXECUTABLE = 0o755
 
 
@@ -33,11 +33,3 @@ def install(folder: Path) -> list[Path]:
             temporary.write_text(text, encoding="utf-8")
             temporary.chmod(EXECUTABLE)
     return programs
-
-
-def is_ours(program: Path) -> bool:
-    """Say whether an earlier `install` wrote it."""
-    try:
-        return MARK in program.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError):
-        return False

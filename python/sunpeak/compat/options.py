@@ -50,6 +50,10 @@ def words_behind(word: str) -> list[str]:
     return value.split()
 
 
+class NotDoneError(InputError):
+    """What an option asks for Sunpeak does not do, and Radiance's program of the same name does."""
+
+
 @dataclass
 class Table:
     """How options look: names with the number of their values, switches, and those without meaning here."""

@@ -4,15 +4,14 @@ Nothing heavy is imported here: a script calls these programs many times, and ea
 """
 
 import os
-import shutil
 import signal
 import sys
 from collections.abc import Callable, Sequence
 from importlib import import_module
-from importlib.util import find_spec
-from pathlib import Path
 
 from sunpeak._core import InputError
+from sunpeak.compat import radiance
+from sunpeak.compat.options import NotDoneError
 
 Program = Callable[[list[str]], int]
 
@@ -20,7 +19,12 @@ PROGRAMS = ("oconv", "rpict", "rtrace", "getinfo", "vwrays", "evalglare")
 """Done by Sunpeak; the module of each has the same name and a function `run` that gives the exit status."""
 
 FAILED = 1
-"""Exit status of Radiance's programs for whatever went wrong."""
+"""Exit status of Radiance's programs for what is wrong."""
+
+SYSTEM_FAILED = 2
+"""Theirs where the system refuses a file, but for those named next."""
+
+ALWAYS_FAILED = frozenset({"vwrays", "evalglare"})
 
 INTERRUPTED = 130
 
@@ -34,14 +38,23 @@ def main(arguments: Sequence[str]) -> int:
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     run: Program = import_module(f"sunpeak.compat.{name}").run
     try:
-        status = run(rest)
+        status = run_or_leave(name, run, rest)
         sys.stdout.flush()
     except KeyboardInterrupt:
         return INTERRUPTED
     except (InputError, OSError) as error:
         sys.stderr.write(f"{name}: {describe(error)}\n")
-        return FAILED
+        is_system = isinstance(error, OSError) and name not in ALWAYS_FAILED
+        return SYSTEM_FAILED if is_system else FAILED
     return status
+
+
+def run_or_leave(name: str, run: Program, arguments: list[str]) -> int:
+    """Run a program of ours, or Radiance's where an option asks for what ours does not do."""
+    try:
+        return run(arguments)
+    except NotDoneError as refusal:
+        return radiance.run_instead(name, arguments, refusal)
 
 
 def describe(error: InputError | OSError) -> str:
@@ -53,7 +66,7 @@ def describe(error: InputError | OSError) -> str:
 
 def pass_through(name: str, arguments: Sequence[str]) -> int:
     """Become a program of Radiance's that Sunpeak lacks."""
-    program = find_program(name)
+    program = radiance.find_program(name)
     if program is None:
         raise InputError(
             f"{name}: Sunpeak does {', '.join(PROGRAMS)} itself; {name} is neither one of them nor on PATH "
@@ -61,16 +74,3 @@ def pass_through(name: str, arguments: Sequence[str]) -> int:
         )
     sys.stdout.flush()
     os.execv(program, [str(program), *arguments])
-
-
-def find_program(name: str) -> Path | None:
-    """Find a program on PATH, or else among those that the package pyradiance brings."""
-    if os.sep in name:
-        return None
-    found = shutil.which(name)
-    if found is not None:
-        return Path(found)
-    package = find_spec("pyradiance")
-    folders = package.submodule_search_locations if package is not None else None
-    candidates = [Path(folder, "bin", name) for folder in folders or ()]
-    return next((program for program in candidates if os.access(program, os.X_OK) and program.is_file()), None)

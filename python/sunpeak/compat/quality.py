@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 
 from sunpeak._core import InputError
-from sunpeak.compat.options import CommandLine
+from sunpeak.compat.options import CommandLine, NotDoneError
 
 ERROR_AT_ONE = 0.3
 """Error [-] that a single direction would stand for: 1024 of them mean 0.9 %."""
@@ -25,13 +25,15 @@ RENDER_VALUES = {
     "-ab": 1, "-ad": 1, "-av": 3, "-n": 1,
     "-aw": 1, "-aa": 1, "-ar": 1, "-as": 1, "-af": 1, "-ae": 1, "-ai": 1, "-aE": 1, "-aI": 1, "-am": 1,
     "-dt": 1, "-dc": 1, "-dj": 1, "-ds": 1, "-dr": 1, "-dp": 1, "-ss": 1, "-st": 1, "-sj": 1, "-lr": 1, "-lw": 1,
-    "-me": 3, "-ma": 3, "-mg": 1, "-ms": 1, "-cs": 1, "-cw": 2, "-P": 1, "-PP": 1, "-e": 1, "-ap": 2,
+    "-me": 3, "-ma": 3, "-mg": 1, "-ms": 1, "-cs": 1, "-cw": 2, "-pc": 8, "-P": 1, "-PP": 1, "-e": 1, "-ap": 2,
     **OWN_VALUES,
 }  # fmt: skip
 """Options of rendering that rpict and rtrace share."""
-IDLE_VALUES = frozenset(RENDER_VALUES) - {"-ab", "-ad", "-av", "-n", "-e", *OWN_VALUES}
-SWITCHES = frozenset({"-w", "-i", "-u", "-bv", "-dv", "-co"})
-IDLE_SWITCHES = frozenset({"-u", "-bv", "-dv", "-co"})
+IDLE_VALUES = frozenset(RENDER_VALUES) - {"-ab", "-ad", "-av", "-n", "-e", "-cs", "-pc", *OWN_VALUES}
+SWITCHES = frozenset({"-w", "-i", "-u", "-bv", "-dv", "-co", "-pRGB", "-pXYZ"})
+IDLE_SWITCHES = frozenset({"-u", "-bv", "-dv"})
+COLOURS = 3
+"""Of a picture, and of `-cs` where no spectra are wanted."""
 
 
 @dataclass(frozen=True)
@@ -48,6 +50,15 @@ class Quality:
     threads: int | None
     max_bounces: int
     ambient: tuple[float, float, float]
+
+
+def check_colours(line: CommandLine) -> None:
+    """Refuse other colours than Radiance's three: other primaries, spectra."""
+    asked = [option for option in ("-pXYZ", "-pc") if option in line.switches or line.has(option)]
+    if line.is_on("-co") and line.whole("-cs", COLOURS) > COLOURS:
+        asked.append("-co+")
+    if asked:
+        raise NotDoneError(f"{' '.join(asked)}: Sunpeak's colours are Radiance's RGB alone")
 
 
 def sensors(line: CommandLine, directions: int) -> Quality:

@@ -22,13 +22,13 @@ DIRECTIONS = 512
 FAR = 1e10
 """Depth where nothing is met."""
 SIZE = 512
-IDLE = frozenset({"-pj", "-pm", "-pd", "-ps", "-pt", "-t", "-r", "-pc"})
+IDLE = frozenset({"-pj", "-pm", "-pd", "-ps", "-pt", "-t", "-r"})
 TABLE = Table(
     values={
         **quality.RENDER_VALUES, "-x": 1, "-y": 1, "-pa": 1, "-o": 1, "-z": 1, "-S": 1, "-ro": 1,
-        **dict.fromkeys(IDLE, 1), "-pc": 8,
+        **dict.fromkeys(IDLE, 1),
     },
-    switches=quality.SWITCHES | {"-defaults", "-pRGB"},
+    switches=quality.SWITCHES | {"-defaults"},
     idle=quality.IDLE_VALUES | quality.IDLE_SWITCHES | IDLE,
     has_view=True,
 )  # fmt: skip
@@ -47,6 +47,7 @@ class Task:
 def run(arguments: list[str]) -> int:
     """Render one picture, or with `-S` one for each view on standard input."""
     line = parse(expand_arguments(arguments), TABLE, {"-w": True})
+    quality.check_colours(line)
     if "-defaults" in line.switches:
         sys.stdout.write(defaults_text(line))
         return 0

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from sunpeak._core import InputError
 from sunpeak.compat import header, numbers, octree, quality
-from sunpeak.compat.options import CommandLine, Table, expand_arguments, take
+from sunpeak.compat.options import CommandLine, NotDoneError, Table, expand_arguments, take
 from sunpeak.compat.world import CompiledScene, First
 
 Floats = npt.NDArray[np.float64]
@@ -56,6 +56,7 @@ class Options:
         while at < len(words) and words[at].startswith("-"):
             at += 1 + self._take(words, at)
         self.line.rest = words[at:]
+        quality.check_colours(self.line)
         self.size = (self.line.whole("-x", 0), self.line.whole("-y", 0))
 
     def _take(self, words: list[str], at: int) -> int:
@@ -66,9 +67,6 @@ class Options:
             self.forms = forms_of(word)
         elif word.startswith("-o") and len(word) > 2:
             self.fields = fields_of(word)
-        elif word in ("-pRGB", "-pXYZ"):
-            if word != "-pRGB":
-                raise InputError(f"{word}: Sunpeak gives Radiance's RGB alone")
         else:
             return take(words, at, TABLE, self.line)
         return 0
@@ -92,9 +90,7 @@ def fields_of(option: str) -> str:
     """Letters after `-o`."""
     for letter in option[2:]:
         if letter in TREE_FIELDS:
-            raise InputError(
-                f"{option}: '{letter}' asks for the tree of rays behind each; Sunpeak follows random paths and has none"
-            )
+            raise NotDoneError(f"{option}: '{letter}' asks for the tree of rays, which random paths have not")
         if letter not in FIELDS:
             raise InputError(f"{option}: Sunpeak's rtrace does not give '{letter}'; expected letters of {FIELDS}")
     return option[2:]
@@ -174,6 +170,9 @@ class Answers:
                 spread(found.distance, good, math.inf),
                 spread(found.point, good, 0.0),
                 spread(found.normal, good, 0.0),
+                spread(found.flat_normal, good, 0.0),
+                spread(found.bent_normal, good, 0.0),
+                spread(found.local, good, 0.0),
                 spread(found.surface, good, -1),
             )
         return self._first
@@ -233,7 +232,12 @@ class Answers:
 
     @property
     def is_met(self) -> npt.NDArray[np.bool_]:
-        """Whether each ray meets anything."""
+        """Whether each ray meets anything that is not infinitely far."""
+        return np.isfinite(self.first.distance)
+
+    @property
+    def is_named(self) -> npt.NDArray[np.bool_]:
+        """Whether each ray meets anything, sources among it."""
         return self.first.surface >= 0
 
     def words(self, letter: str) -> list[str]:
@@ -263,9 +267,9 @@ COLUMNS: dict[str, Callable[[Answers], Floats]] = {
     "l": lambda answers: answers.effective_distance()[:, None],
     "L": lambda answers: np.minimum(answers.first.distance, FAR)[:, None],
     "p": lambda answers: np.where(answers.is_met[:, None], answers.first.point, answers.origins),
-    "n": lambda answers: np.where(answers.is_met[:, None], answers.first.normal, 0.0),
-    "N": lambda answers: np.where(answers.is_met[:, None], answers.first.normal, 0.0),
-    "c": lambda answers: np.zeros((len(answers.rays), 2)),
+    "n": lambda answers: np.where(answers.is_named[:, None], answers.first.bent_normal, 0.0),
+    "N": lambda answers: np.where(answers.is_named[:, None], answers.first.flat_normal, 0.0),
+    "c": lambda answers: np.where(answers.is_met[:, None], answers.first.local[:, :2], 0.0),
     "w": lambda answers: np.ones((len(answers.rays), 1)),
     "W": lambda answers: np.ones((len(answers.rays), 3)),
 }

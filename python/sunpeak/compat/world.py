@@ -16,11 +16,17 @@ class First(NamedTuple):
     """What rays meet first."""
 
     distance: Floats
-    """(n,) [m], infinity where nothing is met."""
+    """(n,) [m], infinity where nothing is met but a source."""
     point: Floats
-    """(n, 3)"""
+    """(n, 3), NaN where there is none."""
     normal: Floats
-    """Of the front (n, 3)."""
+    """Of the front, as a mesh smooths it (n, 3)."""
+    flat_normal: Floats
+    """The same without smoothing (n, 3)."""
+    bent_normal: Floats
+    """As textures and smoothing bend it (n, 3)."""
+    local: Floats
+    """Local coordinates of a mesh, and 0 (n, 3)."""
     surface: npt.NDArray[np.int64]
     """Index (n,), -1 where nothing is met."""
 
@@ -35,7 +41,8 @@ class CompiledScene:
 
     def first(self, origins: Floats, directions: Floats) -> First:
         """Say what rays meet first."""
-        return First(*self.world.first_surfaces(origins, directions))
+        distance, point, (normal, flat, bent), local, surface = self.world.first_surfaces(origins, directions)
+        return First(distance, point, normal, flat, bent, local, surface)
 
     def radiance(self, origins: Floats, directions: Floats, quality: Quality) -> Floats:
         """Radiance along rays (n, 3) [W sr⁻¹ m⁻²]."""

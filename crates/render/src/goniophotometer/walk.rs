@@ -135,7 +135,7 @@ pub(super) fn fork(
 /// Where a ray goes on that passes a surface: beyond what a table with thickness stands for.
 fn onwards(material: &Material, arrival: &Arrival) -> Vec3 {
     match material {
-        Material::Table(table) => arrival.point + table.offset(arrival.normal),
+        Material::Table(table) => arrival.point + table.offset(arrival),
         _ => arrival.point,
     }
 }

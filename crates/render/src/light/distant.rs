@@ -37,6 +37,8 @@ pub(crate) struct Distant {
     pub angle_deg: f64,
     /// What it emits.
     pub emitter: Emitter,
+    /// Which surface of the scene it is.
+    pub surface: u32,
 }
 
 impl Distant {
@@ -187,6 +189,7 @@ mod tests {
             direction,
             angle_deg,
             emitter: Emitter { radiance: gray(value), patterns: Vec::new(), kind },
+            surface: 0,
         }
     }
 

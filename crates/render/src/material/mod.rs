@@ -18,7 +18,7 @@ pub(crate) use emitter::{Emitter, EmitterKind};
 pub(crate) use glass::Glass;
 pub(crate) use prism::Prism;
 pub(crate) use smooth::{Smooth, SmoothSample, SmoothValue};
-pub(crate) use table::Table;
+pub(crate) use table::{Table, stands_for_geometry};
 pub(crate) use varying::{Mixture, Step, Varying, fault_of, modulation_of, tint_of};
 pub(crate) use volume::{Air, Antimatter, Flight, Inside, Mist};
 pub(crate) use ward::{Modifiers, WardMaterial, WgmdMaterial};

@@ -11,12 +11,23 @@
 //! with the split it goes straight, and emitters behind it are left to shadow rays; so nothing counts twice. (With the other
 //! rules such a table is whole, and the straight light of an emitter does count twice, as in Radiance.)
 
-use super::{Arrival, Scattering, Smooth, SmoothValue, smooth::SmoothSample};
+use super::{Arrival, Scattering, Smooth, SmoothValue, fault_of_orientation, smooth::SmoothSample};
 use crate::backlight::Backlight;
 use std::{f64::consts::FRAC_1_PI, sync::Arc};
 use sunpeak_bsdf::{Backlit, Bsdf, Mode, PeakRule};
-use sunpeak_core::{Frame, Rgb, Vec3, luminance, warp};
-use sunpeak_scene::Orientation;
+use sunpeak_core::{Error, Frame, Rgb, Vec3, luminance, warp};
+use sunpeak_scene::{Orientation, Thickness};
+
+/// Thickness up to this is none [m] (Radiance, `FTINY`).
+const NO_THICKNESS: f64 = 1e-6;
+
+/// Is there geometry that a surface of this thickness stands for, anywhere?
+pub(crate) fn stands_for_geometry(thickness: &Thickness) -> bool {
+    match thickness {
+        Thickness::Fixed(thickness) => thickness.abs() > NO_THICKNESS,
+        Thickness::Varying { .. } => true,
+    }
+}
 
 /// The material.
 #[derive(Clone, Debug)]
@@ -24,8 +35,8 @@ pub(crate) struct Table {
     pub bsdf: Arc<Bsdf>,
     /// Is it an `aBSDF`?
     pub is_aperture: bool,
-    /// What it stands for reaches this far behind its front, or, negative, before it [m].
-    pub thickness: f64,
+    /// How far what it stands for reaches behind its front, or, negative, before it.
+    pub thickness: Thickness,
     pub rule: PeakRule,
     pub up: Orientation,
     /// Is the frame left-handed?
@@ -55,19 +66,42 @@ impl Table {
         }
     }
 
-    /// Does it stand for geometry that is there too?
+    /// Does it stand for geometry that is there too, anywhere?
     pub fn is_proxy(&self) -> bool {
-        self.thickness != 0.0
+        stands_for_geometry(&self.thickness)
+    }
+
+    /// How far what it stands for reaches where a ray arrives [m]; 0: there is none.
+    pub fn thickness(&self, arrival: &Arrival) -> f64 {
+        match &self.thickness {
+            Thickness::Fixed(_) if !self.is_proxy() => 0.0,
+            Thickness::Fixed(thickness) => *thickness,
+            Thickness::Varying { field, scale } => {
+                let thickness =
+                    field.values(&arrival.ray_state()).map_or(0.0, |[value]: [f64; 1]| value * scale);
+                if thickness.abs() > NO_THICKNESS { thickness } else { 0.0 }
+            }
+        }
     }
 
     /// Is it invisible to a ray that is no shadow ray? `view`: the ray comes from the camera and met only mirrors and clear panes.
     pub fn is_passed(&self, arrival: &Arrival, view: bool) -> bool {
-        self.is_proxy() && (view || (self.thickness > 0.0) != arrival.at_front())
+        let thickness = self.thickness(arrival);
+        thickness != 0.0 && (view || (thickness > 0.0) != arrival.at_front())
     }
 
-    /// How far from the surface transmitted light starts.
-    pub fn offset(&self, normal: Vec3) -> Vec3 {
-        normal * -self.thickness
+    /// How far from the surface light that goes on straight starts.
+    pub fn offset(&self, arrival: &Arrival) -> Vec3 {
+        arrival.normal * -self.thickness(arrival)
+    }
+
+    /// What an evaluation of its expressions has found to be wrong.
+    pub fn fault(&self) -> Option<Error> {
+        let of_thickness = match &self.thickness {
+            Thickness::Fixed(_) => None,
+            Thickness::Varying { field, .. } => field.fault(),
+        };
+        fault_of_orientation(&self.up).or(of_thickness)
     }
 
     pub fn is_reference_rule(&self) -> bool {
@@ -100,6 +134,7 @@ impl Table {
             table: self,
             frame,
             w_in,
+            thickness: self.thickness(arrival),
             view,
             tint: arrival.tint,
             diffuse_reflection: if arrival.at_front() { self.front_diffuse } else { self.back_diffuse },
@@ -119,6 +154,8 @@ pub(crate) struct TableLobes<'w> {
     table: &'w Table,
     frame: Frame,
     w_in: Vec3,
+    /// How far behind the front transmitted light starts [m].
+    thickness: f64,
     view: bool,
     /// What patterns multiply everything with.
     tint: Rgb,
@@ -183,7 +220,7 @@ impl TableLobes<'_> {
 
     pub fn offset(&self, direction: Vec3) -> Vec3 {
         let is_transmission = direction.dot(self.frame.z) * self.w_in.z < 0.0;
-        if is_transmission { self.table.offset(self.frame.z) } else { Vec3::ZERO }
+        if is_transmission { self.frame.z * -self.thickness } else { Vec3::ZERO }
     }
 
     /// Radiance that the surface gives off in the light of a far field.

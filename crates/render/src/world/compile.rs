@@ -8,7 +8,7 @@ use crate::guide::{Guide, ScatteredSun};
 use crate::light::{Distant, DistantSources, Lamp, LampShape, Lamps};
 use crate::material::{
     Alternate, Antimatter, Ashikhmin, Dielectric, Emitter, EmitterKind, Glass, Material, MaterialId, Mirror,
-    Mist, Mixture, Modifiers, Prism, Step, Table, Varying, WardMaterial, WgmdMaterial,
+    Mist, Mixture, Modifiers, Prism, Step, Table, Varying, WardMaterial, WgmdMaterial, stands_for_geometry,
 };
 use crate::shapes::{Analytic, Cone, MeshSurface, Polygon, Ring, Sphere, Triangle};
 use std::{collections::HashMap, path::Path, sync::Arc};
@@ -27,9 +27,6 @@ const MAX_LAMPS_OF_MESH: usize = 64;
 
 /// Of more pieces of glass than this windows are not looked for.
 const MAX_PANES: usize = 64;
-
-/// Thickness up to this is none [m] (Radiance, `FTINY`).
-const NO_THICKNESS: f64 = 1e-6;
 
 pub(super) fn compile(scene: &Scene, options: &WorldOptions) -> Result<World> {
     let mut compiler = Compiler::new(scene, options);
@@ -164,7 +161,8 @@ impl<'s> Compiler<'s> {
     /// Only emitters shine from infinity; any other material of a `source` is nothing, as in Radiance.
     fn add_source(&mut self, material: MaterialId, direction: Vec3, angle_deg: f64) {
         if let Material::Emitter(emitter) = &self.materials[material.0 as usize] {
-            self.sources.push(Distant { direction, angle_deg, emitter: emitter.clone() });
+            let (emitter, surface) = (emitter.clone(), self.current);
+            self.sources.push(Distant { direction, angle_deg, emitter, surface });
         }
     }
 
@@ -518,16 +516,15 @@ impl<'s> Compiler<'s> {
     }
 
     fn compile_table(&mut self, said: &'s BsdfMaterial) -> Result<Table> {
-        let thickness = if said.thickness.abs() > NO_THICKNESS { said.thickness } else { 0.0 };
         let rule = match self.options.peak {
             rule if said.extract_peak => rule,
-            PeakRule::Split if thickness != 0.0 => PeakRule::Split,
+            PeakRule::Split if stands_for_geometry(&said.thickness) => PeakRule::Split,
             _ => PeakRule::Off,
         };
         Ok(Table {
             bsdf: self.bsdf(&said.file)?,
             is_aperture: said.extract_peak,
-            thickness,
+            thickness: said.thickness.clone(),
             rule,
             up: said.up.clone(),
             mirrored: said.mirrored,

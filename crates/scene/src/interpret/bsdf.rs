@@ -2,7 +2,7 @@
 
 use super::Interpreter;
 use super::args::{check_counts, title, triple};
-use crate::{BsdfMaterial, Orientation, raw::Primitive};
+use crate::{BsdfMaterial, Orientation, Thickness, raw::Primitive};
 use sunpeak_core::Rgb;
 
 /// The material; its XML file is found, not read.
@@ -34,9 +34,9 @@ pub fn material(interpreter: &mut Interpreter, primitive: &Primitive) -> Result<
         varying @ Orientation::Varying(_) => varying,
     };
     let thickness = if extract_peak {
-        0.0
+        Thickness::Fixed(0.0)
     } else {
-        interpreter.constant(primitive, 0, needed - 1, "thickness")? * transform.scale()
+        interpreter.thickness(primitive, needed - 1, transform.scale())?
     };
     let name = &primitive.strings[file_at];
     let file = interpreter.options.find(name, &interpreter.cwd, &primitive.directory, &primitive.location);

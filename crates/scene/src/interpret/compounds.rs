@@ -34,24 +34,7 @@ pub struct Compounds {
 
 impl Interpreter<'_> {
     pub(super) fn compound(&mut self, primitive: &Primitive) -> Result<()> {
-        let Some(file) = primitive.strings.first().filter(|_| primitive.reals.is_empty()) else {
-            return Err(at(
-                primitive,
-                format!(
-                    "wrong number of arguments of {}: expected a file, a transform if it is to be moved, and no real \
-                     arguments",
-                    title(primitive)
-                ),
-            ));
-        };
-        let invocation = Invocation {
-            transform: trailing_transform(&primitive.strings[1..]).map_err(|message| {
-                at(primitive, format!("{}: bad transform: {message}", title(primitive)))
-            })?,
-            transform_args: primitive.strings[1..].to_vec(),
-            prefix: Some(primitive.name.clone()),
-            ..Invocation::default()
-        };
+        let (file, invocation) = arguments(primitive)?;
         let modifier = match self.parent(primitive, &primitive.modifier)? {
             Reference::Void => self.compounds.modifier,
             Reference::Named(Named::Modifier(id)) => Some(self.compounds.modifier.unwrap_or(id)),
@@ -63,6 +46,15 @@ impl Interpreter<'_> {
         match primitive.kind.name {
             "instance" => self.instance(primitive, file, &invocation, modifier),
             _ => self.mesh(primitive, file, &invocation, modifier),
+        }
+    }
+
+    /// The file that an instance or a mesh names, found.
+    pub(super) fn compound_file(&mut self, primitive: &Primitive) -> Result<PathBuf> {
+        let (file, _) = arguments(primitive)?;
+        match primitive.kind.name {
+            "instance" => self.options.find(file, &self.cwd, &primitive.directory, &primitive.location),
+            _ => self.mesh_path(primitive, file),
         }
     }
 
@@ -213,6 +205,26 @@ impl Interpreter<'_> {
         );
         Err(at(primitive, message))
     }
+}
+
+/// File and placement of an instance or a mesh.
+fn arguments(primitive: &Primitive) -> Result<(&str, Invocation)> {
+    let Some(file) = primitive.strings.first().filter(|_| primitive.reals.is_empty()) else {
+        let message = format!(
+            "wrong number of arguments of {}: expected a file, a transform if it is to be moved, and no real arguments",
+            title(primitive)
+        );
+        return Err(at(primitive, message));
+    };
+    let transform = trailing_transform(&primitive.strings[1..])
+        .map_err(|message| at(primitive, format!("{}: bad transform: {message}", title(primitive))))?;
+    let invocation = Invocation {
+        transform,
+        transform_args: primitive.strings[1..].to_vec(),
+        prefix: Some(primitive.name.clone()),
+        ..Invocation::default()
+    };
+    Ok((file, invocation))
 }
 
 fn at(primitive: &Primitive, message: String) -> Error {

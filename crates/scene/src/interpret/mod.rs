@@ -2,6 +2,7 @@
 
 mod args;
 mod bsdf;
+mod check;
 mod compounds;
 mod functions;
 mod materials;
@@ -14,7 +15,7 @@ mod volumes;
 mod wgmd;
 
 use crate::{
-    LoadOptions, Modifier, ModifierId, ModifierKind, Scene, Surface,
+    LoadOptions, Modifier, ModifierId, ModifierKind, Scene, Shape, Surface,
     field::FunctionFiles,
     raw::{Class, Primitive},
 };
@@ -68,6 +69,8 @@ enum Named {
 struct Problem {
     location: Location,
     message: String,
+    /// What is wrong with its own modifier.
+    outer: Option<usize>,
 }
 
 /// What a word in the place of a modifier means.
@@ -102,31 +105,6 @@ impl<'o> Interpreter<'o> {
         }
     }
 
-    /// Take one primitive in, and tell the mistake that it makes; what hangs on a mistake told before is left out without a word.
-    pub fn check(&mut self, primitive: Primitive) -> Option<Error> {
-        let modifier = primitive.modifier.clone();
-        let name = primitive.kind.is_modifier().then(|| primitive.name.clone());
-        match (self.names.get(&*modifier), &name) {
-            (Some(Named::Problem(problem)), None) if !self.told.insert(*problem) => return None,
-            _ => {}
-        }
-        let mistake = self.add(primitive).err()?;
-        if !self.names.contains_key(&*modifier) && ![VOID, INHERIT].contains(&&*modifier) {
-            self.tell(modifier.to_string());
-        }
-        if let Some(name) = name {
-            self.tell(name);
-        }
-        Some(mistake)
-    }
-
-    /// From here on a name stands for a mistake that was told.
-    fn tell(&mut self, name: String) {
-        self.told.insert(self.problems.len());
-        self.names.insert(name, Named::Problem(self.problems.len()));
-        self.problems.push(Problem { location: Location::default(), message: String::new() });
-    }
-
     /// The scene. Modifiers that cannot be used, and that nothing uses, are warnings in it.
     pub fn finish(mut self) -> Scene {
         let untold = self.problems.iter().enumerate().filter(|(index, _)| !self.told.contains(index));
@@ -137,7 +115,10 @@ impl<'o> Interpreter<'o> {
 
     fn modifier(&mut self, primitive: &Primitive) -> Result<()> {
         let named = match self.parent(primitive, &primitive.modifier)? {
-            Reference::Named(problem @ Named::Problem(_)) => problem,
+            Reference::Named(problem @ Named::Problem(outer)) => match self.kind_of(primitive) {
+                Err(Unusable::Because(message)) => self.problem(primitive, message, Some(outer)),
+                _ => problem,
+            },
             Reference::Void => self.make(primitive, None),
             Reference::Named(Named::Modifier(parent)) => self.make(primitive, Some(parent)),
         };
@@ -151,16 +132,16 @@ impl<'o> Interpreter<'o> {
                     "{}: more than {MAX_MIXTURES} mixtures within each other",
                     args::title(primitive)
                 );
-                self.problem(primitive, message)
+                self.problem(primitive, message, None)
             }
             Ok(kind) => self.push(primitive, parent, kind),
             Err(Unusable::Named(named)) => named,
-            Err(Unusable::Because(message)) => self.problem(primitive, message),
+            Err(Unusable::Because(message)) => self.problem(primitive, message, None),
         }
     }
 
-    fn problem(&mut self, primitive: &Primitive, message: String) -> Named {
-        self.problems.push(Problem { location: primitive.location.clone(), message });
+    fn problem(&mut self, primitive: &Primitive, message: String, outer: Option<usize>) -> Named {
+        self.problems.push(Problem { location: primitive.location.clone(), message, outer });
         Named::Problem(self.problems.len() - 1)
     }
 
@@ -212,30 +193,39 @@ impl<'o> Interpreter<'o> {
     }
 
     fn surface(&mut self, primitive: Primitive) -> Result<()> {
-        let modifier = match (self.compounds.modifier, self.parent(&primitive, &primitive.modifier)?) {
+        let modifier = self.modifier_of(&primitive)?;
+        if let Some(shape) = self.shape(&primitive)? {
+            let Primitive { name, location, .. } = primitive;
+            self.scene.surfaces.push(Surface { name, modifier, shape, location });
+        }
+        Ok(())
+    }
+
+    /// What a surface is made of; `None` is void.
+    fn modifier_of(&self, primitive: &Primitive) -> Result<Option<ModifierId>> {
+        let modifier = match (self.compounds.modifier, self.parent(primitive, &primitive.modifier)?) {
             (Some(id), _) => Some(id),
             (None, Reference::Void) => None,
             (None, Reference::Named(Named::Modifier(id))) => Some(id),
-            (None, Reference::Named(Named::Problem(problem))) => return Err(self.raise(problem, &primitive)),
+            (None, Reference::Named(Named::Problem(problem))) => return Err(self.raise(problem, primitive)),
         };
-        if let Some(id) = modifier {
-            self.check_chain(id, &primitive)?;
-        }
+        modifier.map_or(Ok(()), |id| self.check_chain(id, primitive)).map(|()| modifier)
+    }
+
+    /// A surface's shape; `None` where light meets nothing.
+    fn shape(&mut self, primitive: &Primitive) -> Result<Option<Shape>> {
         let at = |message: String| Error::input(primitive.location.clone(), message);
-        let shape = match surfaces::shape(&primitive).map_err(at)? {
-            surfaces::Outcome::Good(shape) => shape,
+        Ok(match surfaces::shape(primitive).map_err(at)? {
+            surfaces::Outcome::Good(shape) => Some(shape),
             surfaces::Outcome::Odd(shape, oddity) => {
-                self.warn(&primitive, &oddity);
-                shape
+                self.warn(primitive, &oddity);
+                Some(shape)
             }
             surfaces::Outcome::Skip(reason) => {
-                self.warn(&primitive, &format!("{reason}; left out"));
-                return Ok(());
+                self.warn(primitive, &format!("{reason}; left out"));
+                None
             }
-        };
-        let Primitive { name, location, .. } = primitive;
-        self.scene.surfaces.push(Surface { name, modifier, shape, location });
-        Ok(())
+        })
     }
 
     fn warn(&mut self, primitive: &Primitive, message: &str) {
@@ -243,7 +233,7 @@ impl<'o> Interpreter<'o> {
     }
 
     fn raise(&self, problem: usize, user: &Primitive) -> Error {
-        let Problem { location, message } = &self.problems[problem];
+        let Problem { location, message, .. } = &self.problems[problem];
         Error::input(
             location.clone(),
             format!("{message} (used by {} at {})", args::title(user), user.location),

@@ -2,7 +2,7 @@
 
 use super::{Interpreter, args::title};
 use crate::{
-    Orientation,
+    Orientation, Thickness,
     command::trailing_transform,
     raw::{Primitive, parse_real},
 };
@@ -37,20 +37,20 @@ impl Interpreter<'_> {
         })
     }
 
-    /// A number, or a constant expression of the function file at string argument `file`.
-    pub(super) fn constant(
+    /// A proxy's thickness: the first string argument, a number or an expression of the function file at string argument `file`.
+    pub(super) fn thickness(
         &mut self,
         primitive: &Primitive,
-        at: usize,
         file: usize,
-        what: &str,
-    ) -> Result<f64, String> {
-        if let Some(number) = parse_real(&primitive.strings[at]) {
-            return Ok(number);
+        scale: f64,
+    ) -> Result<Thickness, String> {
+        if let Some(number) = parse_real(&primitive.strings[0]) {
+            return Ok(Thickness::Fixed(number * scale));
         }
-        let field = self.field(primitive, file, &[at], &[], Vec::new())?;
-        field.constant(0).ok_or_else(|| {
-            format!("{}: the {what} varies over the surface: expected a constant", title(primitive))
+        let field = self.field(primitive, file, &[0], &[], Vec::new())?;
+        Ok(match field.constant(0) {
+            Some(number) => Thickness::Fixed(number * scale),
+            None => Thickness::Varying { field, scale },
         })
     }
 

@@ -9,7 +9,7 @@ fn table(rule: PeakRule, diffuse: f64) -> Table {
     Table {
         bsdf: Arc::new(fabric.tabulate(Basis::KlemsFull).expect("tabulates")),
         is_aperture: true,
-        thickness: 0.0,
+        thickness: Thickness::Fixed(0.0),
         rule,
         up: Orientation::Fixed(Vec3::Y),
         mirrored: false,

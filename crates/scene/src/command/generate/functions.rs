@@ -81,7 +81,8 @@ impl Inputs for Point {
 }
 
 impl Functions {
-    /// Compile expressions in the parameters `s` and `t`. Where the definitions have a function `condition(s,t)`, it is the last.
+    /// Compile expressions in the parameter `t`, and of a surface `s`, which names its `condition`: where the definitions have such a
+    /// function of (s,t), it is the last.
     pub fn compile(
         expressions: &[&String],
         options: &Options,
@@ -89,7 +90,9 @@ impl Functions {
         command: &CommandLine,
     ) -> Result<Self, String> {
         let mut definitions = Definitions::new();
-        definitions.name_channel("s", S);
+        if condition.is_some() {
+            definitions.name_channel("s", S);
+        }
         definitions.name_channel("t", T);
         for (name, text) in &options.definitions {
             definitions.load(text.as_bytes(), name, "").map_err(|error| error.to_string())?;
