@@ -123,6 +123,24 @@ def test_lobes_lie_and_shine_as_they_should_where_nothing_was_measured() -> None
         assert made.evaluate(light, mirrored) == pytest.approx(truth.evaluate(light, mirrored), rel=0.15), theta
 
 
+def test_what_is_smooth_stays_smooth_between_incidences() -> None:
+    """Lobes that move do not add up to a plane: what is wide is blended in its place."""
+
+    def plane(light: np.ndarray, out: np.ndarray) -> np.ndarray:
+        return 0.2 + 0.1 * out[:, 0]
+
+    made = sp.measured_bsdf(synthetic.scans(plane, (20, 40, 60), reflection=True), "t3", resolution=64).bsdf
+    out = lobe_grid()[::7]
+    # A cell is 1.5 % of the plane wide; towards the rim readings lie far apart on the disk.
+    seen = out[out[:, 2] > np.cos(np.radians(70.0))]
+    for theta in (30.0, 50.0):
+        light = sp.direction(theta, 0.0)
+        apart = made.evaluate(light, seen) / plane(light[0], seen) - 1.0
+        assert np.abs(apart).max() < 0.04, theta
+        assert np.sqrt((apart**2).mean()) < 0.01, theta
+        assert made.hemispherical(light, "reflection") == pytest.approx(0.2 * np.pi, rel=5e-3)
+
+
 def lobe_grid() -> np.ndarray:
     """Points even in projected solid angle."""
     radius = np.sqrt((np.arange(200) + 0.5) / 200)[:, None]

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from sunpeak import _core
 from sunpeak.bases import basis_name
 from sunpeak.progress import Callback
-from sunpeak.rendering import reporting
+from sunpeak.runs import UNWATCHED, Run
 from sunpeak.scattering import Bsdf, Floats, Mode, rows
 
 Symmetry = Literal["find", "isotropic", "quadrilateral", "bilateral", "anisotropic"]
@@ -211,6 +211,7 @@ def measured_bsdf(
     beam: Scan | str | PathLike[str] | None = None,
     energy: Energy = "refuse",
     progress: bool | Callback = False,
+    run: Run = UNWATCHED,
 ) -> MeasuredBsdf:
     """Make a BSDF of scans, or of the files that hold them: all sides and modes that they have.
 
@@ -220,7 +221,7 @@ def measured_bsdf(
     `instrument_fwhm_deg` (full width at half maximum, 0.05 to 20) is what the instrument makes of a sharp beam; `beam`
     is a scan of the bare beam to take it from. With either, a lobe of that width in the straight direction becomes an
     exact peak. Where transmittance and reflectance add up to more than 1 the measurement is refused, or with
-    `energy="scale"` scaled.
+    `energy="scale"` scaled. A `run` keeps finished columns after Ctrl-C and shows its own progress.
 
     Raises `InputError` where scans, symmetry or basis do not fit.
     """
@@ -233,10 +234,9 @@ def measured_bsdf(
             raise _core.InputError(f"beam: {len(alone)} incidences; expected the scan of one bare beam")
         instrument_fwhm_deg = alone[0].beam_fwhm_deg()
     name = basis_name(basis, resolution)
-    with reporting(progress, "tabulating") as callback:
-        core = _core.measured_bsdf(
-            [scan._core for scan in given], name, symmetry, instrument_fwhm_deg, energy, callback
-        )
+    watched = Run(progress=progress) if run is UNWATCHED else run
+    with watched.watching("tabulating") as watch:
+        core = _core.measured_bsdf([scan._core for scan in given], name, symmetry, instrument_fwhm_deg, energy, *watch)
     return MeasuredBsdf(core, name, instrument_fwhm_deg)
 
 
