@@ -37,6 +37,7 @@ def test_the_nominal_openness_is_taken_with_a_warning(sunpeak: CommandLine, tmp_
     [
         (("--tau-nn", "6%"), 1, "part of the normal-hemispherical one"),
         (("--rho-front", "96%"), 1, "add up to"),
+        (("--solar-tau-nh", "2%", "--solar-rho-front", "50%"), 1, "solar values: roller blind"),
         (("--scattered", "3%"), 2, "for fabrics from a formula"),
         (("--tau-nh", "5"), 2, "from 0 to 100%"),
     ],

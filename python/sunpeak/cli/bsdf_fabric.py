@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
+from sunpeak._core import InputError
 from sunpeak.bands import Label
 from sunpeak.cli.bsdf_convert import Manufacturer, Name, Thickness
 from sunpeak.cli.options import Quiet
@@ -158,13 +159,18 @@ def _solar(
         return None
     if tau_nh is None or rho_front is None:
         raise typer.BadParameter("solar values need --solar-tau-nh and --solar-rho-front")
-    return RollerBlind(
+    sheet = RollerBlind(
         visible.tau_nn if tau_nn is None else tau_nn,
         tau_nh,
         rho_front,
         rho_front if rho_back is None else rho_back,
         visible.cut_off(),
     )
+    try:
+        sheet.cut_off()
+    except InputError as error:
+        raise InputError(f"solar values: {error}") from error
+    return sheet
 
 
 def _of_datasheet(
