@@ -200,6 +200,28 @@ def test_what_goes_straight_through_a_fabric_comes_back_as_a_peak(
     assert "a peak of the instrument's width at 8 of 8 incidences" in table.describe()["comments"]
 
 
+def test_what_is_mirrored_is_as_sharp_as_the_cells() -> None:
+    """A matt floor of 20 % under a coat that mirrors 4 %, more towards grazing incidence (Schlick)."""
+
+    def mirrored(light: np.ndarray) -> float:
+        return float(0.04 + 0.96 * (1.0 - light[2]) ** 5)
+
+    def seen(light: np.ndarray, out: np.ndarray) -> np.ndarray:
+        return 0.2 / np.pi + mirrored(light) * synthetic.instrument(light * [-1.0, -1.0, 1.0], out, FWHM_DEG)
+
+    measured = synthetic.scans(seen, (0, 15, 30, 45, 60), reflection=True)
+    made = sp.measured_bsdf(measured, "t3-4096", instrument_fwhm_deg=FWHM_DEG)
+    [part] = made.parts
+    np.testing.assert_allclose(part.through, [mirrored(scan.to_light) for scan in measured], rtol=0.01)
+    assert "front reflection: a peak of the instrument's width at 5 of 5 incidences, R 0.0" in made.summary()
+    for light in sp.direction([10.0, 40.0, 55.0], 33.0):
+        whole = 0.2 + mirrored(light)
+        assert made.bsdf.hemispherical(light, "reflection") == pytest.approx(whole, rel=0.02)
+        # Beside the cells of the mirrored direction, where the instrument still saw its light.
+        beside = sp.direction(np.degrees(np.arccos(light[2])), 33.0 + 180.0 + 12.0)
+        assert made.bsdf.evaluate(light, beside) == pytest.approx(0.2 / np.pi, rel=0.05)
+
+
 def test_without_the_width_nothing_is_told_apart(fabric_scans: list[sp.Scan]) -> None:
     made = sp.measured_bsdf(fabric_scans, "t3", resolution=32)
     assert "not stated" in made.summary()

@@ -163,7 +163,7 @@ impl Writer {
         // Writing to a string cannot fail.
         let _ = write!(
             self.text,
-            "\tc\n\t\tcxy {:.6} {:.6}\n\t{name} {:.6}",
+            "\tc\n\t\tcxy {:.9} {:.9}\n\t{name} {:.6}",
             xyz.x / sum,
             xyz.y / sum,
             luminance(share)

@@ -4,7 +4,7 @@
 //! Scattered light between incidences follows Ward, Kurt and Bonneel, "Reducing Anisotropic BSDF Measurement to Common Practice"
 //! (Workshop on Material Appearance Modeling 2014): Gaussian lobes for each incidence ([`lobes`]), the cheapest transport between
 //! neighbours ([`transport`]), lobes on their way in between ([`blend`]). What an instrument has made of a sharp beam is found by its
-//! width ([`specular`]) and kept as an exact peak.
+//! width ([`specular`]): what goes straight is kept as an exact peak, what is mirrored lies in its cells.
 
 mod background;
 mod blend;
@@ -110,9 +110,9 @@ pub fn tabulate(scans: &[Scan], options: &Options, work: &Work) -> Result<Measur
     }
     let [incident, _] = options.basis.divisions();
     work.expect(parts.len() * incident.len());
-    let straight = |kind: Kind| options.instrument_fwhm_deg.is_some() && !kind.reflection;
+    let told_apart = options.instrument_fwhm_deg.is_some();
     let tables = parts.iter().map(|part| {
-        Ok((part.kind, Columnwise::new(part.kind, &part.mesh, options.basis, straight(part.kind), work)?))
+        Ok((part.kind, Columnwise::new(part.kind, &part.mesh, options.basis, told_apart, work)?))
     });
     let mut tables = tables.collect::<Result<Vec<_>>>()?;
     let scaled = energy::check(&mut tables, options.basis, options.energy)?;
@@ -146,13 +146,12 @@ fn part(kind: Kind, measured: &[Incidence], options: &Options, work: &Work) -> R
             symmetry.name()
         ))));
     }
-    let fwhm_deg = options.instrument_fwhm_deg.filter(|_| !kind.reflection);
     let all = symmetry.completed(measured);
     let fitted: Vec<(Node, IncidenceReport)> = all
         .into_par_iter()
         .map(|incidence| {
             work.check()?;
-            node(incidence, fwhm_deg).map_err(named)
+            node(incidence, options.instrument_fwhm_deg).map_err(named)
         })
         .collect::<Result<_>>()?;
     let (mut nodes, reports): (Vec<Node>, Vec<IncidenceReport>) = fitted.into_iter().unzip();
@@ -166,7 +165,7 @@ fn part(kind: Kind, measured: &[Incidence], options: &Options, work: &Work) -> R
     Ok(Part { kind, mesh, report })
 }
 
-/// One incidence: what goes straight, and what is scattered as lobes.
+/// One incidence: what goes straight or is mirrored, and what is scattered as lobes.
 fn node(mut incidence: Incidence, fwhm_deg: Option<f64>) -> Result<(Node, IncidenceReport)> {
     let straight = fwhm_deg.map(|fwhm| specular::separate(&mut incidence, fwhm));
     let (field, coverage) = field::field(&incidence)?;

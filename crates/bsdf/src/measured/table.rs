@@ -34,8 +34,8 @@ pub struct Columnwise {
 }
 
 impl Columnwise {
-    /// Tabulate one kind; `straight`: what goes straight was told apart.
-    pub fn new(kind: Kind, mesh: &Mesh, basis: Basis, straight: bool, work: &Work) -> Result<Self> {
+    /// Tabulate one kind; `told_apart`: what goes straight or is mirrored is known.
+    pub fn new(kind: Kind, mesh: &Mesh, basis: Basis, told_apart: bool, work: &Work) -> Result<Self> {
         let [incident, exiting] = basis.divisions();
         let cells = Cells::new(exiting.clone());
         let columns = 0..incident.len();
@@ -45,7 +45,7 @@ impl Columnwise {
             let points = incident.points(column, THROUGH_POINTS).into_iter().map(|p| (p, mesh.through(p)));
             Delta::over(&points.collect::<Vec<_>>(), &exiting, basis.is_isotropic())
         };
-        let deltas = if straight { columns.map(delta).collect() } else { Vec::new() };
+        let deltas = if told_apart { columns.map(delta).collect() } else { Vec::new() };
         let areas = (0..exiting.len()).map(|cell| cells.area(cell)).collect();
         Ok(Self { basis, scattered, deltas, areas })
     }
@@ -66,14 +66,21 @@ impl Columnwise {
         }
     }
 
-    /// The table; with its exact split where what goes straight was told apart.
+    /// The table; with its exact split where what goes straight was told apart. What is mirrored lies in the cells that the mirrored
+    /// direction sweeps.
     pub fn distribution(&self, reflection: bool) -> Distribution {
         let value = |column: usize, cell: usize| self.scattered[column][cell];
+        if reflection {
+            let mirrored =
+                |column: usize, cell: usize| self.deltas.get(column).map_or(0.0, |d| d.at(cell)) as f32;
+            let table =
+                self.basis.layout().table(|column, cell| value(column, cell) + mirrored(column, cell));
+            return Distribution::new(table, None);
+        }
         if !self.deltas.is_empty() {
             return with_exact_peak(self.basis, value, &self.deltas, None);
         }
-        let table = self.basis.layout().table(value);
-        if reflection { Distribution::new(table, None) } else { Distribution::with_split(table, None) }
+        Distribution::with_split(self.basis.layout().table(value), None)
     }
 }
 
