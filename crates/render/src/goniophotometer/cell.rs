@@ -109,7 +109,7 @@ impl Cell {
     }
 
     /// Is a ray on its way out, with all of the geometry behind it?
-    fn has_left(&self, ray: &Ray) -> bool {
+    pub fn has_left(&self, ray: &Ray) -> bool {
         let (from, to) = (ray.origin.z, ray.direction.z);
         from > self.reach[1] && to > 0.0 || from < self.reach[0] && to < 0.0
     }
