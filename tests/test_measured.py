@@ -123,6 +123,24 @@ def test_lobes_lie_and_shine_as_they_should_where_nothing_was_measured() -> None
         assert made.evaluate(light, mirrored) == pytest.approx(truth.evaluate(light, mirrored), rel=0.15), theta
 
 
+def test_what_is_smooth_stays_smooth_between_incidences() -> None:
+    """Lobes that move do not add up to a plane: what is wide is blended in its place."""
+
+    def plane(light: np.ndarray, out: np.ndarray) -> np.ndarray:
+        return 0.2 + 0.1 * out[:, 0]
+
+    made = sp.measured_bsdf(synthetic.scans(plane, (20, 40, 60), reflection=True), "t3", resolution=64).bsdf
+    out = lobe_grid()[::7]
+    # A cell is 1.5 % of the plane wide; towards the rim readings lie far apart on the disk.
+    seen = out[out[:, 2] > np.cos(np.radians(70.0))]
+    for theta in (30.0, 50.0):
+        light = sp.direction(theta, 0.0)
+        apart = made.evaluate(light, seen) / plane(light[0], seen) - 1.0
+        assert np.abs(apart).max() < 0.04, theta
+        assert np.sqrt((apart**2).mean()) < 0.01, theta
+        assert made.hemispherical(light, "reflection") == pytest.approx(0.2 * np.pi, rel=5e-3)
+
+
 def lobe_grid() -> np.ndarray:
     """Points even in projected solid angle."""
     radius = np.sqrt((np.arange(200) + 0.5) / 200)[:, None]
@@ -180,6 +198,28 @@ def test_what_goes_straight_through_a_fabric_comes_back_as_a_peak(
     np.testing.assert_allclose(table.hemispherical(light), kept.hemispherical(light), rtol=1e-5)
     assert table.describe()["name"] == "weave"
     assert "a peak of the instrument's width at 8 of 8 incidences" in table.describe()["comments"]
+
+
+def test_what_is_mirrored_is_as_sharp_as_the_cells() -> None:
+    """A matt floor of 20 % under a coat that mirrors 4 %, more towards grazing incidence (Schlick)."""
+
+    def mirrored(light: np.ndarray) -> float:
+        return float(0.04 + 0.96 * (1.0 - light[2]) ** 5)
+
+    def seen(light: np.ndarray, out: np.ndarray) -> np.ndarray:
+        return 0.2 / np.pi + mirrored(light) * synthetic.instrument(light * [-1.0, -1.0, 1.0], out, FWHM_DEG)
+
+    measured = synthetic.scans(seen, (0, 15, 30, 45, 60), reflection=True)
+    made = sp.measured_bsdf(measured, "t3-4096", instrument_fwhm_deg=FWHM_DEG)
+    [part] = made.parts
+    np.testing.assert_allclose(part.through, [mirrored(scan.to_light) for scan in measured], rtol=0.01)
+    assert "front reflection: a peak of the instrument's width at 5 of 5 incidences, R 0.0" in made.summary()
+    for light in sp.direction([10.0, 25.0, 40.0], 33.0):
+        whole = 0.2 + mirrored(light)
+        assert made.bsdf.hemispherical(light, "reflection") == pytest.approx(whole, rel=0.02)
+        # Beside the cells of the mirrored direction, where the instrument still saw its light.
+        beside = sp.direction(np.degrees(np.arccos(light[2])), 33.0 + 180.0 + 12.0)
+        assert made.bsdf.evaluate(light, beside) == pytest.approx(0.2 / np.pi, rel=0.05)
 
 
 def test_without_the_width_nothing_is_told_apart(fabric_scans: list[sp.Scan]) -> None:

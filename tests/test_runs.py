@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+import scans as synthetic
 import sunpeak as sp
 from conftest import CommandLine
 from sunpeak.cli.app import app
@@ -29,9 +30,20 @@ def system(path: Path, run: sp.Run) -> None:
     sp.System([pane, sp.Shade.load(source)]).write(path, "klems-quarter", run=run)
 
 
+def measured(path: Path, run: sp.Run) -> None:
+    """Two modes of an isotropic sample, after each other."""
+    matt = synthetic.formula(sp.Formula("phong", diffuse=0.2, specular=0.3, exponent=20))
+    given = [
+        *synthetic.scans(matt, (0.0, 40.0), reflection=True, step_deg=10.0),
+        *synthetic.scans(synthetic.fabric_scatters, (0.0, 40.0), reflection=False, step_deg=10.0),
+    ]
+    sp.measured_bsdf(given, "klems-quarter", run=run).save(path)
+
+
 MAKERS: dict[str, Make] = {
     "convert": converted,
     "system": system,
+    "measured": measured,
     "formula": lambda path, run: sp.Formula("phong").tabulate("klems-quarter", run=run).save(path),
     "fabric": lambda path, run: sp.Fabric().write(path, "klems-quarter", run=run),
     "datasheet": lambda path, run: sp.RollerBlind(0.03, 0.1, 0.4, 0.4).write(path, "klems-quarter", run=run),
@@ -69,7 +81,7 @@ def test_ctrl_c_keeps_what_is_finished(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "command", ["convert", "formula", "fabric", "blind", "perforated", "mesh", "system", "generate"]
+    "command", ["convert", "formula", "fabric", "blind", "perforated", "mesh", "system", "generate", "measured"]
 )
 def test_commands_that_take_long_go_on(command: str) -> None:
     said = CliRunner().invoke(app, ["bsdf", command, "--help"], env={"COLUMNS": "120"})

@@ -1,6 +1,7 @@
 """BSDFs converted and made from formulas, against Radiance and quadratures: `convert.json`, tables of `convert.md`.
 
-usage: python validation/convert.py [SCHEMA.xsd] [times others bsdf2klems albedo radiance peaks]      (some ten minutes)
+usage: python validation/convert.py [SCHEMA.xsd] [times others bsdf2klems coarse albedo radiance peaks]
+(a quarter of an hour)
 
 Needs pyradiance, the real files (`../shared/data`), and, for the files as others read them, pywincalc and xmlschema
 with LBNL's schema 1.7.5; what is missing is left out. Times are processor seconds.
@@ -77,6 +78,23 @@ def bsdf2klems(folder: Path) -> list[Row]:
         ("lobe, t4 64 x 64", folder / "lobe64.xml", (400,)),
         ("blind, t4 64 x 64", folder / "blind.xml", (1000,)),
     ]
+    return against_bsdf2klems(folder, files)
+
+
+def coarse_blind(folder: Path) -> list[Row]:
+    """A blind in cells so wide that bsdf2klems's noise comes below a percent; one side of its transmission alone."""
+    path = folder / "coarse.xml"
+    sp.Blind(tilt_deg=30.0).write(path, "t4-256")
+    blocks = re.compile(r"\t<WavelengthData>.*?</WavelengthData>\n", re.DOTALL)
+    text = path.read_text(encoding="utf-8")
+    path.write_text(
+        blocks.sub(lambda block: block[0] if "Transmission Back" in block[0] else "", text), encoding="utf-8"
+    )
+    return against_bsdf2klems(folder, [("blind, t4 16 x 16", path, (750, 3000))])
+
+
+def against_bsdf2klems(folder: Path, files: list[tuple[str, Path, tuple[int, ...]]]) -> list[Row]:
+    """Each table by ours once, and by theirs with so many random pairs."""
     areas = klems_areas()
     weights = np.outer(areas, areas)
     rows: list[Row] = []
@@ -278,6 +296,7 @@ def main() -> None:
             "times": times,
             "others": lambda: others(folder, schema),
             "bsdf2klems": lambda: bsdf2klems(folder),
+            "coarse": lambda: coarse_blind(folder),
             "albedo": albedos,
             "radiance": lambda: as_radiance_reads(folder),
             "peaks": peaks,

@@ -1,15 +1,18 @@
 """Radiance's generator against closed forms and against itself: into `generate.json`, see `generate.md`.
 
-usage: python validation/generate_spread.py [black paired spread]      (needs pyradiance; two minutes)
+usage: python validation/generate_spread.py [black paired spread reflected]      (needs pyradiance; three minutes)
 
 black: a sheet that reflects nothing; what Radiance finds is what its rays' places say, and the truth has a closed form.
 paired: the same sheet with its reflectance, less what its rays' places did to the black one.
 spread: errors without anybody's converged run: the same product sampled in two places, or with two seeds, differs by
 the errors of both.
+reflected: what the sheet reflects in a few patches, by Radiance's rtrace with as many rays as settle it.
 """
 
 import json
+import math
 import os
+import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
@@ -29,6 +32,12 @@ COUNTS = (60, 240, 960)
 
 RADII = 200
 """Points of a patch over which the closed form is averaged; a sheet of holes is the same at all azimuths."""
+
+REFLECTED_PATCHES = (0, 3, 15, 33, 55, 79, 103, 125)
+"""One of each ring up to 75 degrees: round holes are nearly the same at all azimuths."""
+
+REFLECTED_RAYS, REFLECTED_SAMPLES = 100_000, 1 << 15
+REFLECTED_PARAMS = "-ab 20 -ad 8 -as 0 -aa 0 -lr -20 -lw 0.01 -st 0 -dt 0"
 
 ASIDE = (0.37, 0.21)
 """How far the second place is from the first, in periods of the product."""
@@ -123,6 +132,57 @@ def spread(folder: Path) -> dict[str, Any]:
     return found
 
 
+def reflected(folder: Path) -> dict[str, Any]:
+    """Hemispherical reflectance from the back in some patches: rays of Radiance under an even sky, and our columns.
+
+    What a ray sees of a sky of radiance 1 on its own side is, by reciprocity, what the sheet reflects of light that
+    comes along it.
+    """
+    sheet = Sheet(corners=48)
+    scene = "void glow sky\n0\n0\n4 1 1 1 0\nsky source above\n0\n0\n4 0 0 1 180\n" + sheet.radiance(repeat=15)
+    octree = subprocess.run(["oconv", "-"], input=scene.encode(), capture_output=True, check=True).stdout
+    (folder / "sheet.oct").write_bytes(octree)
+    world = runs.loaded(sheet.radiance(), folder, "cell.rad")
+    made = sp.generate_bsdf(
+        world, "klems", box=sheet.box, periodic=True, samples=REFLECTED_SAMPLES, error=1.0, seed=4, sides=("back",)
+    )
+    random = np.random.default_rng(6)
+    apart, errors = [], []
+    for patch in REFLECTED_PATCHES:
+        towards = within(patch, random, REFLECTED_RAYS)
+        starts = np.column_stack([random.random((REFLECTED_RAYS, 2)) * sheet.pitch, np.full(REFLECTED_RAYS, 1e-4)])
+        rays = np.column_stack([starts, -towards]).astype(np.float32)
+        done = subprocess.run(
+            ["rtrace", "-h", "-ffd", *REFLECTED_PARAMS.split(), str(folder / "sheet.oct")],
+            input=rays.tobytes(),
+            capture_output=True,
+            check=True,
+        )
+        seen = np.frombuffer(done.stdout).reshape(-1, 3)[:, 1]
+        apart.append(float(seen.mean() - made.sides[0].reflectance[patch]))
+        errors.append(math.hypot(seen.std() / math.sqrt(len(seen)), made.sides[0].reflectance_error[patch]))
+    return {
+        "patches": list(REFLECTED_PATCHES),
+        "differences": apart,
+        "errors": errors,
+        "mean_difference": float(np.mean(apart)),
+        "error_of_that_mean": float(np.linalg.norm(errors) / len(errors)),
+    }
+
+
+def within(patch: int, random: np.random.Generator, count: int) -> runs.Floats:
+    """Directions to the light (count, 3), even in projected solid angle over a patch of Klems's full basis."""
+    lower, first = 0, 0
+    for upper, azimuths in runs.RINGS:
+        if patch < first + azimuths:
+            squares = np.sin(np.radians([lower, upper])) ** 2
+            sine = np.sqrt(random.uniform(*squares, count))
+            phi = 2 * np.pi * (patch - first + random.random(count) - 0.5) / azimuths
+            return np.column_stack([sine * np.cos(phi), sine * np.sin(phi), np.sqrt(1 - sine**2)])
+        lower, first = upper, first + azimuths
+    raise ValueError(patch)
+
+
 def moved(box: Box, period: float) -> Box:
     """A box of the same size elsewhere in the product."""
     x, y = (share * period for share in ASIDE)
@@ -138,7 +198,9 @@ def compared(one: runs.Floats, other: runs.Floats, own: runs.Floats, again: runs
     return found
 
 
-PARTS: dict[str, Callable[[Path], dict[str, Any]]] = {"black": black, "paired": paired, "spread": spread}
+Part = Callable[[Path], dict[str, Any]]
+
+PARTS: dict[str, Part] = {"black": black, "paired": paired, "spread": spread, "reflected": reflected}
 
 
 def main() -> None:

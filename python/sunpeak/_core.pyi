@@ -98,7 +98,8 @@ def measured_bsdf(
     symmetry: str,
     instrument_fwhm_deg: float | None,
     energy: str,
-    progress: Callable[[int, int], None] | None,
+    kept: Kept | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Measured: ...
 def load_solar(path: str | PathLike[str]) -> Bsdf: ...
 def convert_bsdf(
@@ -125,7 +126,7 @@ _Corners = tuple[Sequence[float], Sequence[float]] | None
 
 class Generated:
     def bsdf(self) -> Bsdf: ...
-    def xml(self, comment: str) -> str: ...
+    def xml(self, comment: str, geometry: Scene | None = None) -> str: ...
     @property
     def corners(self) -> _Floats: ...
     @property
@@ -200,6 +201,7 @@ class Scene:
     @staticmethod
     def check(files: list[str], search_path: list[str], allow_commands: bool) -> tuple[Scene, list[str], list[str]]: ...
     def surface_labels(self) -> list[tuple[str, str, str, bool]]: ...
+    def to_mgf(self, offset: tuple[float, float, float]) -> str: ...
     def bounds(self) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None: ...
     @property
     def surface_names(self) -> list[str]: ...
@@ -265,11 +267,18 @@ def roller_blind(
     rho_front: float,
     rho_back: float,
     cutoff_deg: float | None,
+    color: tuple[float, float, float] | None,
     kept: Kept | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Bsdf: ...
 def roller_blind_transmittance(
-    tau_nn: float, tau_nh: float, rho_front: float, rho_back: float, cutoff_deg: float | None, incidence_rad: float
+    tau_nn: float,
+    tau_nh: float,
+    rho_front: float,
+    rho_back: float,
+    cutoff_deg: float | None,
+    color: tuple[float, float, float] | None,
+    incidence_rad: float,
 ) -> tuple[float, float, float]: ...
 
 class Layer:

@@ -85,13 +85,17 @@ class GeneratedBsdf:
             lines.append(f"up to {100 * self.lost:.2g} % of a column's light was given up on its way")
         return "\n".join(lines)
 
-    def xml(self) -> str:
-        """The text of an LBNL XML file, with the summary as a comment."""
-        return self._core.xml(self.summary())
+    def xml(self, geometry: Scene | None = None) -> str:
+        """The text of an LBNL XML file, with the summary as a comment, and the `geometry` that was traced as MGF.
 
-    def save(self, path: str | PathLike[str]) -> None:
-        """Write an LBNL XML file, whole or not at all."""
-        write_text(path, self.xml())
+        The geometry is moved so that the middle of the box's upper face is the origin, where proxies have it. Raises
+        `InputError` where it has a material that MGF has no words for.
+        """
+        return self._core.xml(self.summary(), None if geometry is None else geometry._core)
+
+    def save(self, path: str | PathLike[str], *, geometry: Scene | None = None) -> None:
+        """Write what `xml` gives, whole or not at all."""
+        write_text(path, self.xml(geometry))
 
     def save_errors(self, path: str | PathLike[str]) -> None:
         """Write the standard errors of all cells and of the hemispherical values as NumPy's .npz, whole or not at all.

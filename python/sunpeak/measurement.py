@@ -12,7 +12,7 @@ import numpy.typing as npt
 from sunpeak import _core
 from sunpeak.bases import basis_name
 from sunpeak.progress import Callback
-from sunpeak.rendering import reporting
+from sunpeak.runs import UNWATCHED, Run
 from sunpeak.scattering import Bsdf, Floats, Mode, rows
 
 Symmetry = Literal["find", "isotropic", "quadrilateral", "bilateral", "anisotropic"]
@@ -94,9 +94,9 @@ class MeasuredPart:
     """Azimuth of the direction to the light, from x."""
     readings: Floats
     through: Floats
-    """What goes straight [-]; NaN where it was not found or not looked for."""
+    """What goes straight, or is mirrored [-]; NaN where it was not found or not looked for."""
     readings_in_peak: Floats
-    """Readings within the instrument's width of the straight direction where they are too few; else NaN."""
+    """Readings within the instrument's width of that direction where they are too few; else NaN."""
     scattered: Floats
     """Hemispherical value of the rest [-]."""
     largest_exit_deg: Floats
@@ -131,19 +131,21 @@ class MeasuredPart:
         return lines
 
     def peak_summary(self) -> list[str]:
-        """What went straight, where it was looked for."""
+        """What went straight or was mirrored, where it was looked for."""
         name, found = f"{self.side} {self.mode}", np.isfinite(self.through)
+        symbol, where = ("T", "straight") if self.mode == "transmission" else ("R", "mirrored")
         lines = []
         if found.any():
             values = self.through[found]
             lines.append(
                 f"{name}: a peak of the instrument's width at {found.sum()} of {len(found)} incidences, "
-                f"T {values.min():.4g} to {values.max():.4g}"
+                f"{symbol} {values.min():.4g} to {values.max():.4g}"
             )
         few = np.isfinite(self.readings_in_peak)
         if few.any():
             lines.append(
-                f"{name}: too few readings in the straight direction at {few.sum()} incidences: T by their neighbours"
+                f"{name}: too few readings in the {where} direction at {few.sum()} incidences: {symbol} by their "
+                "neighbours"
             )
         if not (found.any() or few.any()):
             lines.append(f"{name}: no lobe as narrow as the instrument's")
@@ -176,8 +178,7 @@ class MeasuredBsdf:
             lines.append("instrument's width not stated: what goes straight is not told from what is scattered")
         else:
             lines.append(f"instrument: {self.instrument_fwhm_deg:.4g} degrees, full width at half maximum")
-            transmitted = [part for part in self.parts if part.mode == "transmission"]
-            lines += [line for part in transmitted for line in part.peak_summary()]
+            lines += [line for part in self.parts for line in part.peak_summary()]
         for side, cells, worst, theta in self.scaled:
             lines.append(
                 f"warning: {side}: transmittance and reflectance up to {worst:.4f} (at {theta:.1f} degrees): "
@@ -211,6 +212,7 @@ def measured_bsdf(
     beam: Scan | str | PathLike[str] | None = None,
     energy: Energy = "refuse",
     progress: bool | Callback = False,
+    run: Run = UNWATCHED,
 ) -> MeasuredBsdf:
     """Make a BSDF of scans, or of the files that hold them: all sides and modes that they have.
 
@@ -219,8 +221,9 @@ def measured_bsdf(
 
     `instrument_fwhm_deg` (full width at half maximum, 0.05 to 20) is what the instrument makes of a sharp beam; `beam`
     is a scan of the bare beam to take it from. With either, a lobe of that width in the straight direction becomes an
-    exact peak. Where transmittance and reflectance add up to more than 1 the measurement is refused, or with
-    `energy="scale"` scaled.
+    exact peak, and one in the mirrored direction lies in its cells as sharp as they are. Where transmittance and
+    reflectance add up to more than 1 the measurement is refused, or with `energy="scale"` scaled. A `run` keeps
+    finished columns after Ctrl-C and shows its own progress.
 
     Raises `InputError` where scans, symmetry or basis do not fit.
     """
@@ -233,10 +236,9 @@ def measured_bsdf(
             raise _core.InputError(f"beam: {len(alone)} incidences; expected the scan of one bare beam")
         instrument_fwhm_deg = alone[0].beam_fwhm_deg()
     name = basis_name(basis, resolution)
-    with reporting(progress, "tabulating") as callback:
-        core = _core.measured_bsdf(
-            [scan._core for scan in given], name, symmetry, instrument_fwhm_deg, energy, callback
-        )
+    watched = Run(progress=progress) if run is UNWATCHED else run
+    with watched.watching("tabulating") as watch:
+        core = _core.measured_bsdf([scan._core for scan in given], name, symmetry, instrument_fwhm_deg, energy, *watch)
     return MeasuredBsdf(core, name, instrument_fwhm_deg)
 
 

@@ -53,6 +53,14 @@ class Scene:
         """Read a scene from a text, as `load` does; messages call it `name`."""
         return cls(_core.Scene.parse(text, name, strings(search_path), allow_commands))
 
+    def to_mgf(self, offset: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> str:
+        """Geometry and materials in the Materials and Geometry Format, in the same units, moved by `offset`.
+
+        Patterns and textures have no words there and are left out; lights are black. Raises `InputError` with file and
+        line of a material that has none.
+        """
+        return self._core.to_mgf(offset)
+
     @property
     def surfaces(self) -> list[str]:
         """Names of the surfaces and sources, in file order."""

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sunpeak import _core
-from sunpeak.bands import write_bands
+from sunpeak.bands import UNLABELLED, Label, write_bands
 from sunpeak.runs import UNWATCHED, Run
 from sunpeak.scattering import Bsdf, Floats, rows
 
@@ -21,6 +21,7 @@ class _Sheet:
     """What both have: tabulated, written, asked for its closed form."""
 
     _kind: str
+    thickness_mm: float
 
     def _numbers(self) -> dict[str, float]:
         raise NotImplementedError
@@ -40,13 +41,17 @@ class _Sheet:
         basis: str = "klems",
         *,
         split: str | PathLike[str] | None = None,
+        label: Label = UNLABELLED,
         run: Run = UNWATCHED,
     ) -> None:
         """Write an LBNL XML file of what `bsdf` gives, whole or not at all; bases as for `Fabric.write`.
 
         `split` names a folder for the exact straight part beside the rest, which `Bsdf.load` reads.
         """
-        write_bands(self.bsdf(basis, run=run), None, path, split)
+        lengths = ", ".join(f"{name} {value:g}" for name, value in vars(self).items() if name.endswith("_mm"))
+        comments = f"{type(self).__name__} sheet in closed form, exact means over cells: {lengths}"
+        thick = label if label.thickness_m is not None else label._replace(thickness_m=self.thickness_mm / 1e3)
+        write_bands(self.bsdf(basis, run=run), None, path, split, comments=comments, label=thick)
 
 
 @dataclass(frozen=True)

@@ -131,4 +131,4 @@ class System:
         layers = "; ".join(layer.name for layer in self.layers)
         comments = f"Layers from outside to inside: {layers}. Panes in patches: {panes}."
         visible = self.bsdf(basis, "visible", panes=panes, run=run)
-        write_bands(visible, solar, path, split, comments)
+        write_bands(visible, solar, path, split, comments=comments)

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -85,3 +86,30 @@ def test_the_same_blind_by_both_generators(world: sp.World, radiance: Radiance, 
         # The sides, the azimuths: a blind that is mirrored or turned round is far off.
         turned = ours.hemispherical(w_in * [1, -1, 1], "transmission") - theirs.hemispherical(w_in, "transmission")
         assert np.sqrt((turned**2).mean()) > 0.15
+
+
+def test_radiance_unpacks_the_geometry_as_a_proxy(world: sp.World, radiance: Radiance, tmp_path: Path) -> None:
+    text = SLATS.radiance()
+    made = sp.generate_bsdf(world, "klems-quarter", box=SLATS.box, periodic=True, samples=16, error=1.0)
+    made.save(tmp_path / "slats.xml", geometry=sp.Scene.parse(text))
+    made.save(tmp_path / "plain.xml")
+    radiance.run("pkgBSDF", "slats.xml", folder=tmp_path)
+    unpacked = (tmp_path / "slats.rad").read_text(encoding="utf-8")
+    proxy = sp.Scene.load([tmp_path / "slats.rad"])
+    # The proxy's own two faces come first, those of the box; then what was traced, moved to its middle.
+    assert len(proxy.surfaces) == 2 + len(sp.Scene.parse(text).surfaces)
+    x0, x1, y0, y1, _, z1 = SLATS.box
+    detail = sp.Scene.parse(unpacked[unpacked.index("## Translated from MGF") :])
+    traced, moved = (scene._core.bounds() for scene in (sp.Scene.parse(text), detail))
+    assert traced is not None
+    assert moved is not None
+    for before, after in zip(traced, moved, strict=True):
+        middle = (0.5 * (x0 + x1), 0.5 * (y0 + y1), z1)
+        np.testing.assert_allclose(after, np.asarray(before) - middle, atol=1e-6)
+    reflectances = re.search(r"plastic \S+\n0\n0\n5((?: \S+)+)", unpacked)
+    assert reflectances is not None
+    np.testing.assert_allclose([float(word) for word in reflectances[1].split()], [0.6, 0.6, 0.6, 0, 0], atol=1e-5)
+    # Tables are those of the file without geometry, for us and for Radiance.
+    w_in, w_out = sp.direction([10.0, 40.0, 130.0], 20.0), sp.direction([30.0, 150.0, 60.0], 200.0)
+    both = [sp.Bsdf.load(tmp_path / name).evaluate(w_in, w_out) for name in ("slats.xml", "plain.xml")]
+    np.testing.assert_array_equal(*both)

@@ -7,7 +7,7 @@ use crate::{
     table::Columns,
 };
 use glam::DVec2;
-use sunpeak_core::gray;
+use sunpeak_core::{gray, xyz_to_rgb};
 
 /// Off the border of two rows, along which the straight direction runs in isotropic trees.
 const BESIDE: f64 = 1e-9;
@@ -60,24 +60,32 @@ impl Columns {
     }
 }
 
-/// What is scattered [1/sr] by column and cell, and the deltas of the columns, as a table with its split.
+/// What is scattered [1/sr] by column and cell, and the deltas of the columns, as a table with its split. The deltas are gray; `tint`
+/// has CIE X and Z of what is scattered over its Y.
 pub(crate) fn with_exact_peak(
     basis: Basis,
     scattered: impl Fn(usize, usize) -> f32,
     deltas: &[Delta],
+    tint: Option<[f64; 2]>,
 ) -> Distribution {
     let [incident, exiting] = basis.divisions();
-    let table = basis.layout().table(|column, cell| {
-        let straight = deltas.get(column).map_or(0.0, |d| d.at(cell));
-        (f64::from(scattered(column, cell)) + straight) as f32
-    });
+    let plane = |tint: f64| {
+        basis.layout().table(|column, cell| {
+            let straight = deltas.get(column).map_or(0.0, |d| d.at(cell));
+            (tint * f64::from(scattered(column, cell)) + straight) as f32
+        })
+    };
+    let table = plane(1.0);
+    let color = tint.map(|xz| xz.map(|tint| plane(tint).into_values()));
+    let [x, z] = tint.unwrap_or([1.0; 2]);
+    let scattered_color = xyz_to_rgb([x, 1.0, z].into());
     let part = |column: usize, delta: &Delta| -> Part {
         let p_in = incident.point(column, [0.5, 0.5]);
         let mut under = 0.0;
         let cells = delta.cells.iter().filter(|c| c.1 > 0.0).map(|&(cell, _)| {
             let rest = f64::from(scattered(column, cell));
             under += rest * exiting.projected_solid_angle(cell);
-            (table.index(p_in, exiting.point(cell, [0.5, 0.5])), gray(rest))
+            (table.index(p_in, exiting.point(cell, [0.5, 0.5])), rest * scattered_color)
         });
         let cells = cells.collect();
         let peak = ColumnPeak {
@@ -89,5 +97,5 @@ pub(crate) fn with_exact_peak(
         (if delta.mean > 0.0 { peak } else { ColumnPeak::default() }, cells)
     };
     let parts: Vec<Part> = deltas.iter().enumerate().map(|(column, delta)| part(column, delta)).collect();
-    Distribution::with_known_split(table, None, |columns| Split::from_parts(columns, parts, None))
+    Distribution::with_known_split(table, color, |columns| Split::from_parts(columns, parts, None))
 }

@@ -55,4 +55,4 @@ pub use picture_cells::{ExitCell, IncidentCell};
 pub use proposal::Oriented;
 pub use split_files::SplitFiles;
 pub use work::{Kept, Work};
-pub use xml_write::Label;
+pub use xml_write::{Geometry, Label};

@@ -44,6 +44,17 @@ pub struct Label {
     pub thickness_m: Option<f64>,
     /// How the tables were made, and their statistical error.
     pub comments: Option<String>,
+    /// The detail that the tables stand for.
+    pub geometry: Option<Geometry>,
+}
+
+/// Geometry of a product.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Geometry {
+    /// In MGF, in metres; x and y from the middle of the product, z from its front.
+    pub mgf: String,
+    /// Width and height of the product [m].
+    pub size_m: [f64; 2],
 }
 
 /// Which cells a tree is written in.
@@ -121,9 +132,11 @@ impl Bsdf {
         writeln!(out, "\t\t<Name>{}</Name>", own(&label.name, &self.name))?;
         writeln!(out, "\t\t<Manufacturer>{}</Manufacturer>", own(&label.manufacturer, &self.manufacturer))?;
         if let Some(thickness) = label.thickness_m.or(self.thickness_m) {
-            // Millimetres, as WINDOW's own files: its readers take the number without looking at the unit. To the nanometre.
-            let millimetres = (thickness * 1e9).round() / 1e6;
-            writeln!(out, "\t\t<Thickness unit=\"Millimeter\">{millimetres}</Thickness>")?;
+            write_length(out, "Thickness", thickness)?;
+        }
+        if let Some(geometry) = &label.geometry {
+            write_length(out, "Width", geometry.size_m[0])?;
+            write_length(out, "Height", geometry.size_m[1])?;
         }
         writeln!(out, "\t\t<DeviceType>Other</DeviceType>")?;
         let comments = own(&label.comments, &self.comments);
@@ -131,6 +144,11 @@ impl Bsdf {
             writeln!(out, "\t\t<Comments>{comments}</Comments>")?;
         }
         writeln!(out, "\t</Material>")?;
+        if let Some(geometry) = &label.geometry {
+            writeln!(out, "\t<Geometry format=\"MGF\">\n\t\t<MGFblock unit=\"meter\">")?;
+            write!(out, "{}", escaped(&geometry.mgf))?;
+            writeln!(out, "\t\t</MGFblock>\n\t</Geometry>")?;
+        }
         writeln!(
             out,
             "\t<DataDefinition>\n\t\t<IncidentDataStructure>{}</IncidentDataStructure>",
@@ -186,6 +204,12 @@ fn escaped(text: &str) -> String {
     // XML has no control characters but these.
     let text: String = text.chars().filter(|c| !c.is_control() || matches!(c, '\n' | '\t')).collect();
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+/// A length in millimetres, as in WINDOW's own files: its readers take the number without looking at the unit. To the nanometre.
+fn write_length(out: &mut String, name: &str, metres: f64) -> std::fmt::Result {
+    let millimetres = (metres * 1e9).round() / 1e6;
+    writeln!(out, "\t\t<{name} unit=\"Millimeter\">{millimetres}</{name}>")
 }
 
 fn write_basis(out: &mut String, basis: &AngleBasis) -> std::fmt::Result {

@@ -20,7 +20,7 @@ pub fn bsdf_xml(
     thickness_m: Option<f64>,
     comments: Option<String>,
 ) -> PyResult<String> {
-    let label = Label { name, manufacturer, thickness_m, comments };
+    let label = Label { name, manufacturer, thickness_m, comments, geometry: None };
     let solar = solar.map(|solar| solar.0.clone());
     py.detach(|| bsdf.0.to_xml_as(&label, solar.as_deref())).or_raise()
 }

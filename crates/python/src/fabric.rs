@@ -13,12 +13,14 @@ fn of_datasheet(
     rho_front: f64,
     rho_back: f64,
     cutoff_deg: Option<f64>,
+    color: Option<[f64; 3]>,
 ) -> PyResult<RollerBlind> {
     let blind = RollerBlind {
         normal_normal: tau_nn,
         normal_hemispherical: tau_nh,
         reflectance: [rho_front, rho_back],
         cutoff_deg,
+        color: color.map(Into::into),
     };
     blind.check().or_raise()?;
     Ok(blind)
@@ -26,7 +28,7 @@ fn of_datasheet(
 
 /// Tabulate a roller blind from its datasheet; its through part is kept as the model has it.
 #[pyfunction]
-#[pyo3(signature = (basis, tau_nn, tau_nh, rho_front, rho_back, cutoff_deg, kept=None, progress=None))]
+#[pyo3(signature = (basis, tau_nn, tau_nh, rho_front, rho_back, cutoff_deg, color, kept=None, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "keywords of the Python face")]
 pub fn roller_blind(
     py: Python<'_>,
@@ -36,10 +38,11 @@ pub fn roller_blind(
     rho_front: f64,
     rho_back: f64,
     cutoff_deg: Option<f64>,
+    color: Option<[f64; 3]>,
     kept: Option<PyRef<'_, PyKept>>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<PyBsdf> {
-    let blind = of_datasheet(tau_nn, tau_nh, rho_front, rho_back, cutoff_deg)?;
+    let blind = of_datasheet(tau_nn, tau_nh, rho_front, rho_back, cutoff_deg, color)?;
     let basis: Basis = basis.parse().or_raise()?;
     let bsdf = run_kept(
         py,
@@ -59,8 +62,9 @@ pub fn roller_blind_transmittance(
     rho_front: f64,
     rho_back: f64,
     cutoff_deg: Option<f64>,
+    color: Option<[f64; 3]>,
     incidence_rad: f64,
 ) -> PyResult<(f64, f64, f64)> {
-    let blind = of_datasheet(tau_nn, tau_nh, rho_front, rho_back, cutoff_deg)?;
+    let blind = of_datasheet(tau_nn, tau_nh, rho_front, rho_back, cutoff_deg, color)?;
     Ok((blind.through(incidence_rad), blind.total(incidence_rad), blind.cutoff_deg()))
 }

@@ -4,13 +4,14 @@ use crate::arrays::{Rows, numbers, rows, vectors};
 use crate::bsdf::PyBsdf;
 use crate::error::{InputError, OrRaise};
 use crate::render::PyWorld;
+use crate::scene::PyScene;
 use crate::watch::run_watched;
 use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
 use std::sync::Arc;
-use sunpeak_bsdf::{Bsdf, Label};
+use sunpeak_bsdf::{Bsdf, Geometry, Label};
 use sunpeak_core::Vec3;
 use sunpeak_render::{
     Edges, GeneratedColumn, GeneratedSide, GonioOptions, Side, generate_bsdf as generate,
@@ -35,10 +36,18 @@ impl PyGenerated {
         PyBsdf(self.bsdf.clone())
     }
 
-    /// The text of an LBNL XML file.
-    fn xml(&self, py: Python<'_>, comment: String) -> PyResult<String> {
-        let thickness = Some((self.corners[1] - self.corners[0]).z);
-        let label = Label { comments: Some(comment), thickness_m: thickness, ..Label::default() };
+    /// The text of an LBNL XML file; with a scene's geometry in it, moved to where such files have their origin.
+    #[pyo3(signature = (comment, geometry=None))]
+    fn xml(&self, py: Python<'_>, comment: String, geometry: Option<&PyScene>) -> PyResult<String> {
+        let [low, high] = self.corners;
+        let size = high - low;
+        let offset = -Vec3::new(0.5 * (low.x + high.x), 0.5 * (low.y + high.y), high.z);
+        let geometry = geometry
+            .map(|scene| scene.0.to_mgf(offset).map(|mgf| Geometry { mgf, size_m: [size.x, size.y] }))
+            .transpose()
+            .or_raise()?;
+        let label =
+            Label { comments: Some(comment), thickness_m: Some(size.z), geometry, ..Label::default() };
         py.detach(|| self.bsdf.to_xml_as(&label, None)).or_raise()
     }
 

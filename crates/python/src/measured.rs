@@ -3,14 +3,15 @@
 use crate::arrays::{Numbers, Rows, directions, numbers, rows};
 use crate::bsdf::PyBsdf;
 use crate::error::{InputError, OrRaise};
-use crate::watch::run_watched;
+use crate::kept::{PyKept, run_kept};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
 use std::sync::Arc;
 use sunpeak_bsdf::measured::{
-    IncidenceReport, KindReport, Measured, Options, Reading, Scan, Straight, beam_fwhm_deg, read, tabulate,
+    IncidenceReport, KindReport, Measured, Options, Reading, Scan, Straight, beam_fwhm_deg, read, sum_up,
+    tabulate,
 };
 
 /// The readings of one incidence.
@@ -150,8 +151,9 @@ fn columns<'py>(py: Python<'py>, kind: &KindReport) -> PyResult<Bound<'py, PyDic
     Ok(table)
 }
 
-/// Tabulate scans; `progress` is called with the columns that are done and all.
+/// Tabulate scans; finished columns go to `kept`, and `progress` is called with their number and that of all.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "keywords of the Python face")]
 pub fn measured_bsdf(
     py: Python<'_>,
     scans: Vec<PyRef<'_, PyScan>>,
@@ -159,6 +161,7 @@ pub fn measured_bsdf(
     symmetry: String,
     instrument_fwhm_deg: Option<f64>,
     energy: &str,
+    kept: Option<PyRef<'_, PyKept>>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<PyMeasured> {
     let options = Options {
@@ -168,8 +171,13 @@ pub fn measured_bsdf(
         energy: energy.parse().or_raise()?,
     };
     let scans: Vec<Scan> = scans.iter().map(|scan| scan.0.clone()).collect();
-    let Measured { bsdf, kinds, scaled } =
-        run_watched(py, progress.as_ref(), |control| tabulate(&scans, &options, control))?;
+    let Measured { bsdf, kinds, scaled } = run_kept(
+        py,
+        kept.as_deref(),
+        progress.as_ref(),
+        |sum| sum_up(&scans, &options, sum),
+        |work| tabulate(&scans, &options, work),
+    )?;
     let scaled = scaled.iter().map(|s| (side_name(s.front), s.columns, s.worst[0], s.worst[1])).collect();
     Ok(PyMeasured { bsdf: Arc::new(bsdf), kinds, scaled })
 }

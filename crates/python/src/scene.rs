@@ -89,6 +89,11 @@ impl PyScene {
         .collect()
     }
 
+    /// As MGF, moved by an offset.
+    fn to_mgf(&self, py: Python<'_>, offset: [f64; 3]) -> PyResult<String> {
+        py.detach(|| self.0.to_mgf(offset.into())).or_raise()
+    }
+
     /// Lowest and highest coordinates of all surfaces; None if none is anywhere.
     fn bounds(&self) -> Option<([f64; 3], [f64; 3])> {
         self.0.bounds().map(|[low, high]| (low.to_array(), high.to_array()))

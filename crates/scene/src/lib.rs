@@ -21,6 +21,7 @@ mod field;
 mod files;
 mod interpret;
 mod load;
+mod mgf;
 mod picture;
 pub mod raw;
 mod scene;

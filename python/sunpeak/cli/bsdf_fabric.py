@@ -1,16 +1,20 @@
 """`sunpeak bsdf fabric`: a fabric from its datasheet or from a formula."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
+from sunpeak._core import InputError
+from sunpeak.bands import Label
+from sunpeak.cli.bsdf_convert import Manufacturer, Name, Thickness
 from sunpeak.cli.options import Quiet
-from sunpeak.cli.output import note
+from sunpeak.cli.output import emit, note
 from sunpeak.cli.run import Resume, running
-from sunpeak.cli.values import parse_share
+from sunpeak.cli.values import parse_colour, parse_share
 from sunpeak.fabrics import Fabric, RollerBlind
+from sunpeak.glare_control import CAVEAT, MEANINGS
 
 DATASHEET = "From a datasheet (EN 14500)"
 FORMULA = "From a formula"
@@ -53,6 +57,15 @@ def fabric(
     solar_rho_back: Annotated[
         Any, _share("--solar-rho-back", "Solar: towards the room.", DATASHEET, "as the front")
     ] = None,
+    colour: Annotated[
+        Any,
+        typer.Option(
+            parser=parse_colour,
+            metavar="#RRGGBB|R,G,B",
+            help="Of the threads, as on a screen (sRGB) or linear: tints what is scattered and reflected (visible).",
+            rich_help_panel=DATASHEET,
+        ),
+    ] = None,
     split: Annotated[
         Path | None,
         typer.Option(
@@ -81,6 +94,9 @@ def fabric(
     reflectance: Annotated[
         Any, _share("--reflectance", "Diffuse, both sides.", FORMULA, _default("reflectance"))
     ] = None,
+    name: Name = None,
+    manufacturer: Manufacturer = None,
+    thickness: Thickness = None,
     resume: Resume = False,
     quiet: Quiet = False,
 ) -> None:
@@ -89,7 +105,11 @@ def fabric(
     Datasheet: a roller blind by the model of Kotey, Wright and Collins (2009). Formula: T = openness cos(90 deg theta /
     cut-off)^exponent, a lobe around the straight direction, and diffuse light.
 
+    For a datasheet the glare-control class of EN 14501:2005 is printed.
+
     [dim]$[/dim] [cyan]sunpeak bsdf fabric -o blind.xml --tau-nn 3% --tau-nh 5% --rho-front 40% --rho-back 35%[/cyan]
+
+    [dim]$[/dim] [cyan]sunpeak bsdf fabric -o red.xml --tau-nn 3% --tau-nh 5% --rho-front 9% --colour '#8a4d4d'[/cyan]
 
     [dim]$[/dim] [cyan]sunpeak bsdf fabric -o shade.xml --basis t3-4096 --openness 3%[/cyan]
     """
@@ -100,27 +120,31 @@ def fabric(
         "lobe_sigma": lobe_sigma,
         "reflectance": reflectance,
     }
-    given = {name: value for name, value in formula.items() if value is not None}
+    given = {key: value for key, value in formula.items() if value is not None}
+    label = Label(name, manufacturer, thickness)
     solar = (solar_tau_nn, solar_tau_nh, solar_rho_front, solar_rho_back)
     if tau_nn is None and tau_nh is None and rho_front is None and rho_back is None:
-        if split is not None or any(value is not None for value in solar):
+        if any(value is not None for value in (split, colour, *solar)):
             raise typer.BadParameter(
-                "--split and --solar-…: for fabrics from a datasheet; expected --tau-nn and --tau-nh"
+                "--split, --colour and --solar-…: for fabrics from a datasheet; expected --tau-nn and --tau-nh"
             )
         known = {"openness": openness, "cut_off_deg": cut_off}
-        given |= {name: value for name, value in known.items() if value is not None}
+        given |= {key: value for key, value in known.items() if value is not None}
         with running(output, resume, quiet) as run:
-            Fabric(**given).write(output, basis, run=run)
+            Fabric(**given).write(output, basis, label=label, run=run)
         return
     if given:
         names = ", ".join("--" + name.replace("_", "-") for name in given)
         raise typer.BadParameter(
             f"{names}: for fabrics from a formula; expected none of it beside a datasheet's numbers"
         )
-    visible = _of_datasheet(tau_nn, tau_nh, rho_front, rho_back, openness, cut_off, quiet)
+    visible = replace(_of_datasheet(tau_nn, tau_nh, rho_front, rho_back, openness, cut_off, quiet), colour=colour)
     beside = _solar(visible, *solar)
     with running(output, resume, quiet) as run:
-        visible.write(output, basis, solar=beside, split=split, run=run)
+        visible.write(output, basis, solar=beside, split=split, label=label, run=run)
+    reached = visible.glare_control_class()
+    emit(f"glare control: class {reached}, {MEANINGS[reached]} (EN 14501:2005)\n")
+    note(CAVEAT, quiet)
 
 
 def _solar(
@@ -135,13 +159,18 @@ def _solar(
         return None
     if tau_nh is None or rho_front is None:
         raise typer.BadParameter("solar values need --solar-tau-nh and --solar-rho-front")
-    return RollerBlind(
+    sheet = RollerBlind(
         visible.tau_nn if tau_nn is None else tau_nn,
         tau_nh,
         rho_front,
         rho_front if rho_back is None else rho_back,
         visible.cut_off(),
     )
+    try:
+        sheet.cut_off()
+    except InputError as error:
+        raise InputError(f"solar values: {error}") from error
+    return sheet
 
 
 def _of_datasheet(

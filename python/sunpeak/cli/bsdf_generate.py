@@ -13,6 +13,7 @@ from sunpeak.cli.run import stoppable
 from sunpeak.cli.values import parse_numbers, parse_percent
 from sunpeak.files import check_target
 from sunpeak.generation import Box, GeneratedBsdf, SideName, generate_bsdf
+from sunpeak.scenes import Scene
 
 GEOMETRY = "Where light comes in"
 TABLES = "What is written"
@@ -109,6 +110,14 @@ def generate(
             rich_help_panel=TABLES,
         ),
     ] = None,
+    geometry: Annotated[
+        bool,
+        typer.Option(
+            "--geometry",
+            help="Put the geometry into the file, too, as MGF: for proxies (Radiance's pkgBSDF).",
+            rich_help_panel=TABLES,
+        ),
+    ] = False,
     name: Annotated[str | None, typer.Option(help="In the file; the output's name.", rich_help_panel=TABLES)] = None,
     manufacturer: Annotated[str, typer.Option(help="In the file.", rich_help_panel=TABLES)] = "",
     resume: Annotated[
@@ -129,6 +138,8 @@ def generate(
     [dim]$[/dim] [cyan]sunpeak bsdf generate slats.rad -o blind.xml --box 0,1,0.1,0.15,-0.05,0 --periodic[/cyan]
 
     [dim]$[/dim] [cyan]sunpeak bsdf generate sheet.rad -o sheet.xml --basis t4 --resolution 64 --split sheet[/cyan]
+
+    [dim]$[/dim] [cyan]sunpeak bsdf generate slats.rad -o blind.xml --geometry[/cyan]
     """
     scene = options.load_scene(scenes, search_path, allow_commands)
     for warning in scene.warnings:
@@ -137,6 +148,9 @@ def generate(
     tables = named_basis(basis, resolution)
     if errors is not None:
         check_target(errors)
+    if geometry:
+        # What MGF has no words for is said before the rays, not after.
+        scene.to_mgf()
     with stoppable(output, quiet) as state:
         made = generate_bsdf(
             scene,
@@ -160,12 +174,19 @@ def generate(
             resume=resume,
             progress=not quiet,
         )
-    write(made, output, split, errors, quiet)
+    write(made, output, split, errors, quiet, scene if geometry else None)
 
 
-def write(made: GeneratedBsdf, output: Path, split: Path | None, errors: Path | None, quiet: bool) -> None:
+def write(
+    made: GeneratedBsdf,
+    output: Path,
+    split: Path | None,
+    errors: Path | None,
+    quiet: bool,
+    geometry: Scene | None = None,
+) -> None:
     """Write the files, and say how exact they are."""
-    made.save(output)
+    made.save(output, geometry=geometry)
     note(made.summary(), quiet)
     if errors is not None:
         made.save_errors(errors)

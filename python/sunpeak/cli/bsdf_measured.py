@@ -8,8 +8,8 @@ import typer
 from sunpeak.cli.bsdf_convert import Manufacturer, Name, Thickness
 from sunpeak.cli.options import Quiet
 from sunpeak.cli.output import note
+from sunpeak.cli.run import Resume, running
 from sunpeak.cli.values import parse_width
-from sunpeak.files import check_target
 from sunpeak.measurement import Energy, Symmetry, measured_bsdf
 
 SAMPLE = "What was measured"
@@ -59,6 +59,7 @@ def measured(
     name: Name = None,
     manufacturer: Manufacturer = None,
     thickness: Thickness = None,
+    resume: Resume = False,
     quiet: Quiet = False,
 ) -> None:
     """Make a BSDF of goniophotometer scans; whatever sides and modes they have become tables.
@@ -69,18 +70,18 @@ def measured(
 
     [dim]$[/dim] [cyan]sunpeak bsdf measured screen.csv -o screen.xml --beam empty.txt --symmetry bilateral[/cyan]
     """
-    check_target(output)
-    made = measured_bsdf(
-        scans,
-        basis,
-        resolution=resolution,
-        symmetry=symmetry,
-        instrument_fwhm_deg=instrument_fwhm,
-        beam=beam,
-        energy=energy,
-        progress=not quiet,
-    )
-    made.save(output, name=name, manufacturer=manufacturer, thickness_m=thickness)
+    with running(output, resume, quiet) as run:
+        made = measured_bsdf(
+            scans,
+            basis,
+            resolution=resolution,
+            symmetry=symmetry,
+            instrument_fwhm_deg=instrument_fwhm,
+            beam=beam,
+            energy=energy,
+            run=run,
+        )
+        made.save(output, name=name, manufacturer=manufacturer, thickness_m=thickness)
     note(made.summary(), quiet)
     if split is not None:
         for written in made.save_split(split):

@@ -5,6 +5,8 @@ from typing import Annotated, Any
 
 import typer
 
+from sunpeak.bands import Label
+from sunpeak.cli.bsdf_convert import Manufacturer, Name
 from sunpeak.cli.options import Quiet
 from sunpeak.cli.run import Resume, running
 from sunpeak.cli.values import parse_share
@@ -27,6 +29,8 @@ def perforated(
     reflectance: Reflectance = "50%",
     basis: Basis = "klems",
     split: Split = None,
+    name: Name = None,
+    manufacturer: Manufacturer = None,
     resume: Resume = False,
     quiet: Quiet = False,
 ) -> None:
@@ -36,7 +40,7 @@ def perforated(
     """
     sheet = Perforated(diameter, pitch, thickness, pattern, reflectance)
     with running(output, resume, quiet) as run:
-        sheet.write(output, basis, split=split, run=run)
+        sheet.write(output, basis, split=split, label=Label(name, manufacturer), run=run)
 
 
 def mesh(
@@ -48,6 +52,8 @@ def mesh(
     reflectance: Reflectance = "50%",
     basis: Basis = "klems",
     split: Split = None,
+    name: Name = None,
+    manufacturer: Manufacturer = None,
     resume: Resume = False,
     quiet: Quiet = False,
 ) -> None:
@@ -57,4 +63,4 @@ def mesh(
     """
     sheet = ExpandedMesh(long_way, short_way, strand, thickness, reflectance)
     with running(output, resume, quiet) as run:
-        sheet.write(output, basis, split=split, run=run)
+        sheet.write(output, basis, split=split, label=Label(name, manufacturer), run=run)

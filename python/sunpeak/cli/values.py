@@ -44,6 +44,26 @@ def parse_percent(text: str) -> float:
     return percent / 100
 
 
+def parse_colour(text: str) -> tuple[float, float, float]:
+    """`#8a6f4d`, a colour as screens show it (sRGB), or `0.25,0.16,0.08`, as linear red, green and blue."""
+    if re.fullmatch(r"#[0-9a-fA-F]{6}", text.strip()):
+        red, green, blue = (_linear(int(text.strip()[at : at + 2], 16) / 255) for at in (1, 3, 5))
+    else:
+        try:
+            red, green, blue = (float(part) for part in text.split(","))
+        except ValueError as error:
+            raise typer.BadParameter(f"{text!r}; expected #RRGGBB, or red,green,blue as in 0.25,0.16,0.08") from error
+    if not (min(red, green, blue) >= 0 and 0 < max(red, green, blue) < math.inf):
+        raise typer.BadParameter(f"{text!r}; expected numbers of 0 or more, not all of them 0")
+    return red, green, blue
+
+
+def _linear(value: float) -> float:
+    """Undo the transfer function of sRGB (IEC 61966-2-1)."""
+    linear: float = value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4
+    return linear
+
+
 def parse_share(text: str) -> float:
     """`3%` or `0.03` as 0.03."""
     try:

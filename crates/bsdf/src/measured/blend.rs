@@ -5,6 +5,7 @@
 //! the three, weighted likewise, so that the outcome is the measurement itself at a corner, and depends on the two ends alone on an edge.
 
 use super::{
+    background::Background,
     lobes::{Lobe, Scattered},
     transport,
 };
@@ -96,7 +97,7 @@ const LEAST_FLUX: f64 = 1e-6;
 
 /// What is scattered where the corners have these weights; `links` gives the way from one node to another.
 pub fn blend<'a>(corners: &[Corner], links: impl Fn(usize, usize) -> Option<&'a Links>) -> Scattered {
-    let floor = corners.iter().map(|c| c.weight * c.scattered.floor).sum();
+    let background = Background::sum(corners.iter().map(|c| (c.weight, &c.scattered.background)));
     let flux_of = |s: &Scattered| s.lobes.iter().map(|l| l.flux).sum::<f64>();
     let flux: f64 = corners.iter().map(|c| c.weight * flux_of(c.scattered)).sum();
     let bases: Vec<&Corner> =
@@ -118,7 +119,7 @@ pub fn blend<'a>(corners: &[Corner], links: impl Fn(usize, usize) -> Option<&'a 
     }
     let kept: f64 = lobes.iter().map(|l| l.flux).sum();
     lobes.iter_mut().for_each(|l| l.flux *= flux / kept);
-    Scattered { floor, lobes }
+    Scattered { background, lobes }
 }
 
 /// A lobe on its way to the others at once: each combination of its targets.
@@ -163,7 +164,10 @@ mod tests {
 
     fn lobe_at(x: f64, flux: f64) -> Scattered {
         let at = |dx: f64| Lobe { middle: DVec2::new(x + dx, 0.1), sigma: 0.05, flux: 0.25 * flux };
-        Scattered { floor: 0.1 * flux, lobes: [-0.06, -0.02, 0.02, 0.06].map(at).to_vec() }
+        Scattered {
+            background: Background::even(0.1 * flux),
+            lobes: [-0.06, -0.02, 0.02, 0.06].map(at).to_vec(),
+        }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Lobes into the cells of a division: flux by cell, none of it lost.
 
-use super::lobes::Lobe;
+use super::{background::Background, lobes::Lobe};
 use crate::table::Columns;
 use glam::DVec2;
 use std::f64::consts::PI;
@@ -73,6 +73,19 @@ impl Cells {
             self.add_points(lobe, fluxes);
         } else {
             self.add_sums(lobe, lobe.sigma > WIDE * width, fluxes);
+        }
+    }
+
+    /// Add a share of a background to the mean values [1/sr] of the cells.
+    pub fn add_background(&self, background: &Background, share: f64, values: &mut [f64]) {
+        let is_wide = matches!(self.division, Columns::Patches(_));
+        for (cell, value) in values.iter_mut().enumerate() {
+            let mean = if is_wide {
+                0.25 * self.quarters[cell].iter().map(|&q| background.at(q)).sum::<f64>()
+            } else {
+                background.at(self.middles[cell])
+            };
+            *value += share * mean;
         }
     }
 

@@ -1,10 +1,13 @@
-//! One incidence as a diffuse part and a sum of Gaussian lobes on the disk of projected directions (radial basis functions).
+//! One incidence as a smooth background and a sum of Gaussian lobes on the disk of projected directions (radial basis functions).
 //!
 //! Ward, Kurt and Bonneel, "Reducing Anisotropic BSDF Measurement to Common Practice" (Workshop on Material Appearance Modeling 2014),
 //! put lobes on a hemisphere; on the disk the mirrored and the straight direction move in a straight line when the incidence does,
 //! and areas are projected solid angles, so that masses are flux.
 
-use super::field::{Field, SIDE};
+use super::{
+    background::Background,
+    field::{Field, SIDE},
+};
 use glam::DVec2;
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -24,8 +27,8 @@ pub struct Lobe {
 /// What one incidence scatters.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scattered {
-    /// The same in all directions: BSDF [1/sr].
-    pub floor: f64,
+    /// What changes slowly over the hemisphere.
+    pub background: Background,
     /// The rest.
     pub lobes: Vec<Lobe>,
 }
@@ -33,7 +36,7 @@ pub struct Scattered {
 impl Scattered {
     /// Hemispherical transmittance or reflectance [-].
     pub fn flux(&self) -> f64 {
-        PI * self.floor + self.lobes.iter().map(|l| l.flux).sum::<f64>()
+        self.background.flux() + self.lobes.iter().map(|l| l.flux).sum::<f64>()
     }
 }
 
@@ -42,6 +45,9 @@ pub const MOST_LOBES: usize = 240;
 
 /// Leaves are divided until what they smear is this share of the flux.
 const SMEARED: f64 = 2e-3;
+
+/// Flux above the background that is worth lobes [-].
+const LEAST_REST: f64 = 1e-9;
 
 /// Smallest leaf, and the leaves of the first division [cells of the field a side].
 const SMALLEST: usize = 2;
@@ -67,16 +73,18 @@ struct Leaf {
     centroid: DVec2,
 }
 
-/// Split a field into its floor and lobes.
+/// Split a field into its background and lobes.
 pub fn fit(field: &Field) -> Scattered {
-    let leaves = leaves(field);
-    let floor = floor(field);
+    let background = Background::of(field);
+    let rest = rest(field, &background);
+    let mean = |field: &Field| field.0.iter().sum::<f64>() / field.0.len() as f64;
+    let leaves = leaves(&rest, PI * mean(field));
     let area = |leaf: &Leaf| PI * (leaf.size as f64 / SIDE as f64).powi(2);
-    let targets: Vec<f64> = leaves.iter().map(|l| area(l) * (l.mean - floor).max(0.0)).collect();
-    let whole: f64 = targets.iter().sum();
-    if whole <= 1e-9 {
-        let mean = leaves.iter().map(|l| area(l) * l.mean).sum::<f64>() / PI;
-        return Scattered { floor: mean, lobes: Vec::new() };
+    let targets: Vec<f64> = leaves.iter().map(|l| area(l) * l.mean.max(0.0)).collect();
+    let whole = PI * mean(&rest);
+    if whole <= LEAST_REST {
+        let all = Background::sum([(1.0, &background), (mean(&rest), &Background::even(1.0))].into_iter());
+        return Scattered { background: all, lobes: Vec::new() };
     }
     let mut lobes: Vec<Lobe> = leaves
         .iter()
@@ -87,17 +95,14 @@ pub fn fit(field: &Field) -> Scattered {
     lobes.retain(|l| l.flux > 1e-7 * whole);
     let kept: f64 = lobes.iter().map(|l| l.flux).sum();
     lobes.iter_mut().for_each(|l| l.flux *= whole / kept);
-    Scattered { floor, lobes }
+    Scattered { background, lobes }
 }
 
-/// The least mean over a small part of the hemisphere [1/sr]: single readings are noisy.
-fn floor(field: &Field) -> f64 {
-    const PART: usize = SIDE / 16;
-    let mean = |part: usize| {
-        let corner = [part / 16 * PART, part % 16 * PART];
-        Leaf::new(field, corner, PART).mean
-    };
-    (0..256).map(mean).fold(f64::INFINITY, f64::min)
+/// What stands above the background; noise may lie below it.
+fn rest(field: &Field, background: &Background) -> Field {
+    let at = |k: usize| (k as f64 + 0.5) / SIDE as f64;
+    let under = |cell: usize| background.at_square([at(cell / SIDE), at(cell % SIDE)]);
+    Field(field.0.iter().enumerate().map(|(cell, value)| value - under(cell)).collect())
 }
 
 impl Leaf {
@@ -107,7 +112,7 @@ impl Leaf {
         let mean = cells().map(|at| field.0[at]).sum::<f64>() / count;
         let off = cells().map(|at| (field.0[at] - mean).abs()).sum::<f64>();
         let weighted = cells().fold((DVec2::ZERO, 0.0), |(sum, weight), at| {
-            let value = field.0[at];
+            let value = field.0[at].max(0.0);
             (sum + super::field::middle(at / SIDE, at % SIDE) * value, weight + value)
         });
         let half = 0.5 * size as f64;
@@ -132,12 +137,11 @@ impl Leaf {
     }
 }
 
-/// Divide where most is smeared.
-fn leaves(field: &Field) -> Vec<Leaf> {
+/// Divide where most is smeared, until little of the `whole` flux is.
+fn leaves(field: &Field, whole: f64) -> Vec<Leaf> {
     let side = SIDE / FIRST;
     let mut leaves: Vec<Leaf> =
         (0..side * side).map(|k| Leaf::new(field, [k / side * FIRST, k % side * FIRST], FIRST)).collect();
-    let whole = field.0.iter().sum::<f64>() * PI / (SIDE * SIDE) as f64;
     while leaves.len() + 3 <= MOST_LOBES {
         let divisible = (0..leaves.len()).filter(|&k| leaves[k].size > SMALLEST);
         let Some(worst) = divisible.max_by(|&a, &b| leaves[a].smeared.total_cmp(&leaves[b].smeared)) else {
@@ -194,11 +198,11 @@ mod tests {
             l.flux * (-0.5 * q.distance_squared(l.middle) / l.sigma.powi(2)).exp()
                 / (2.0 * PI * l.sigma.powi(2))
         };
-        scattered.floor + scattered.lobes.iter().map(gauss).sum::<f64>()
+        scattered.background.at(q) + scattered.lobes.iter().map(gauss).sum::<f64>()
     }
 
     #[test]
-    fn a_diffuser_is_a_floor_alone() {
+    fn a_diffuser_is_a_background_alone() {
         let found = fit(&field(|_| 0.25));
         assert!(found.lobes.is_empty());
         assert!((found.flux() - 0.25 * PI).abs() < 1e-9);
@@ -212,7 +216,7 @@ mod tests {
         // Closed form: the lobe lies inside the disk.
         let flux = PI * 0.05 + 2.0 * 2.0 * PI * sigma * sigma;
         assert!((found.flux() / flux - 1.0).abs() < 1e-3, "{} {flux}", found.flux());
-        assert!((found.floor - 0.05).abs() < 1e-6);
+        assert!((found.background.at(DVec2::new(-0.6, 0.5)) - 0.05).abs() < 1e-6);
         for q in [center, center + DVec2::new(0.08, 0.0), center + DVec2::new(0.0, 0.16)] {
             assert!(
                 (value(&found, q) - truth(q)).abs() < 0.05 * 2.0,

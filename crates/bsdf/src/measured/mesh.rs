@@ -47,7 +47,8 @@ impl Mesh {
             let first = &nodes[0];
             let turned = |l: &Lobe| Lobe { middle: -l.middle, ..*l };
             let lobes = first.scattered.lobes.iter().map(turned).collect();
-            let scattered = Scattered { lobes, ..first.scattered.clone() };
+            let background = first.scattered.background.opposite();
+            let scattered = Scattered { background, lobes };
             nodes.insert(0, Node { p: -first.p, scattered, through: first.through });
         }
         match &nodes[..] {
@@ -93,6 +94,7 @@ impl Mesh {
         let mut scattered = self.blended(triangle, weights);
         if let Some(axis) = p.try_normalize() {
             scattered.lobes.iter_mut().for_each(|l| l.middle = axis.rotate(l.middle));
+            scattered.background = scattered.background.turned(axis);
         }
         (scattered, through.at(r).max(0.0))
     }

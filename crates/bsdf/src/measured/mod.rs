@@ -4,8 +4,9 @@
 //! Scattered light between incidences follows Ward, Kurt and Bonneel, "Reducing Anisotropic BSDF Measurement to Common Practice"
 //! (Workshop on Material Appearance Modeling 2014): Gaussian lobes for each incidence ([`lobes`]), the cheapest transport between
 //! neighbours ([`transport`]), lobes on their way in between ([`blend`]). What an instrument has made of a sharp beam is found by its
-//! width ([`specular`]) and kept as an exact peak.
+//! width ([`specular`]): what goes straight is kept as an exact peak, what is mirrored lies in its cells.
 
+mod background;
 mod blend;
 mod deposit;
 mod energy;
@@ -32,16 +33,18 @@ pub use symmetry::Symmetry;
 
 use crate::{
     bsdf::{Bsdf, Sides},
+    codec::Encoder,
     peak::Instrument,
     synthetic::Basis,
+    work::Work,
     xml::Document,
 };
 use glam::DVec2;
 use mesh::{Mesh, Node};
 use rayon::prelude::*;
 use scan::{Incidence, incidences};
-use std::sync::Arc;
-use sunpeak_core::{Control, Error, Result};
+use std::{io, sync::Arc};
+use sunpeak_core::{Error, Result};
 use table::Columnwise;
 
 /// How a measurement becomes a BSDF.
@@ -75,8 +78,23 @@ struct Part {
     report: KindReport,
 }
 
+/// Write down all that a table depends on.
+///
+/// # Errors
+/// Of what it is written to.
+pub fn sum_up(scans: &[Scan], options: &Options, to: &mut Encoder<impl io::Write>) -> io::Result<()> {
+    to.text(&format!("{options:?}"))?;
+    for scan in scans {
+        to.text(&scan.name)?;
+        to.numbers(scan.to_light.to_array())?;
+        to.count(scan.readings.len())?;
+        to.numbers(scan.readings.iter().flat_map(|r| [r.exit.x, r.exit.y, r.exit.z, r.value]))?;
+    }
+    Ok(())
+}
+
 /// Tabulate scans. Whatever sides and modes they have become tables; progress counts columns.
-pub fn tabulate(scans: &[Scan], options: &Options, control: &Control) -> Result<Measured> {
+pub fn tabulate(scans: &[Scan], options: &Options, work: &Work) -> Result<Measured> {
     if let Some(fwhm_deg) = options.instrument_fwhm_deg {
         Instrument::FwhmDeg(fwhm_deg).check()?;
     }
@@ -84,18 +102,17 @@ pub fn tabulate(scans: &[Scan], options: &Options, control: &Control) -> Result<
     for kind in Kind::ALL {
         let measured = incidences(scans, kind)?;
         if !measured.is_empty() {
-            control.check()?;
-            parts.push(part(kind, &measured, options)?);
+            parts.push(part(kind, &measured, options, work)?);
         }
     }
     if parts.is_empty() {
         return Err(Error::value("no scans with readings; expected at least one incidence"));
     }
     let [incident, _] = options.basis.divisions();
-    control.set_total((parts.len() * incident.len()) as u64);
-    let straight = |kind: Kind| options.instrument_fwhm_deg.is_some() && !kind.reflection;
+    work.expect(parts.len() * incident.len());
+    let told_apart = options.instrument_fwhm_deg.is_some();
     let tables = parts.iter().map(|part| {
-        Ok((part.kind, Columnwise::new(&part.mesh, options.basis, straight(part.kind), control)?))
+        Ok((part.kind, Columnwise::new(part.kind, &part.mesh, options.basis, told_apart, work)?))
     });
     let mut tables = tables.collect::<Result<Vec<_>>>()?;
     let scaled = energy::check(&mut tables, options.basis, options.energy)?;
@@ -120,7 +137,7 @@ pub fn tabulate(scans: &[Scan], options: &Options, control: &Control) -> Result<
 }
 
 /// From readings to a mesh of incidences.
-fn part(kind: Kind, measured: &[Incidence], options: &Options) -> Result<Part> {
+fn part(kind: Kind, measured: &[Incidence], options: &Options, work: &Work) -> Result<Part> {
     let named = |error: Error| Error::value(format!("{}: {error}", kind.name()));
     let symmetry = Symmetry::named(&options.symmetry, measured).map_err(named)?;
     if options.basis.is_isotropic() && symmetry != Symmetry::Isotropic {
@@ -129,13 +146,14 @@ fn part(kind: Kind, measured: &[Incidence], options: &Options) -> Result<Part> {
             symmetry.name()
         ))));
     }
-    let fwhm_deg = options.instrument_fwhm_deg.filter(|_| !kind.reflection);
     let all = symmetry.completed(measured);
     let fitted: Vec<(Node, IncidenceReport)> = all
         .into_par_iter()
-        .map(|incidence| node(incidence, fwhm_deg))
-        .collect::<Result<_>>()
-        .map_err(named)?;
+        .map(|incidence| {
+            work.check()?;
+            node(incidence, options.instrument_fwhm_deg).map_err(named)
+        })
+        .collect::<Result<_>>()?;
     let (mut nodes, reports): (Vec<Node>, Vec<IncidenceReport>) = fitted.into_iter().unzip();
     fill_through(&mut nodes, &reports);
     let report = KindReport::new(kind, symmetry, measured, reports);
@@ -147,7 +165,7 @@ fn part(kind: Kind, measured: &[Incidence], options: &Options) -> Result<Part> {
     Ok(Part { kind, mesh, report })
 }
 
-/// One incidence: what goes straight, and what is scattered as lobes.
+/// One incidence: what goes straight or is mirrored, and what is scattered as lobes.
 fn node(mut incidence: Incidence, fwhm_deg: Option<f64>) -> Result<(Node, IncidenceReport)> {
     let straight = fwhm_deg.map(|fwhm| specular::separate(&mut incidence, fwhm));
     let (field, coverage) = field::field(&incidence)?;

@@ -1,4 +1,5 @@
-//! What goes straight through, told from what is scattered by the instrument's own width.
+//! What goes straight through, or is mirrored, told from what is scattered by the instrument's own width. In a table's points both are
+//! where the light comes in.
 //!
 //! An instrument sees a delta of transmittance T as T times its signature, a Gaussian of constant angular width, in BSDF times cosine. A
 //! scatterer's lobe is wider. Around the straight direction the readings are fitted by the signature, one wider lobe and a constant, and

@@ -26,6 +26,11 @@ pub trait Product: Debug + Sync {
         None
     }
 
+    /// CIE X and Z of what is reflected over its Y; none for gray.
+    fn reflected_tint(&self) -> Option<[f64; 2]> {
+        None
+    }
+
     /// Diffuse reflectance [-] of the side that the light meets, and of the other one.
     fn reflectance(&self) -> [f64; 2];
 

@@ -11,7 +11,7 @@ use super::{Basis, Goniophotometer, product::Product, tabulate, tabulate_exact};
 use crate::{bsdf::Bsdf, work::Work};
 use glam::DVec2;
 use std::f64::consts::PI;
-use sunpeak_core::{Error, Result};
+use sunpeak_core::{Error, Result, Rgb, luminance, rgb_to_xyz};
 
 /// An isotropic fabric that scatters diffusely what does not go straight through; visible, or solar.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +24,8 @@ pub struct RollerBlind {
     pub reflectance: [f64; 2],
     /// Angle of incidence past which nothing goes straight through [deg]; none: the model's.
     pub cutoff_deg: Option<f64>,
+    /// Colour of the threads: what is scattered and reflected, of any luminance; none: gray.
+    pub color: Option<Rgb>,
 }
 
 impl RollerBlind {
@@ -56,12 +58,41 @@ impl RollerBlind {
                 )));
             }
         }
+        self.check_color()?;
         match self.cutoff_deg {
             Some(deg) if !(deg > 0.0 && deg <= 90.0) => Err(Error::value(format!(
                 "roller blind: cut-off at {deg} degrees; expected more than 0, up to 90"
             ))),
             _ => Ok(()),
         }
+    }
+
+    /// The brightest channel must not give back more than it gets.
+    fn check_color(&self) -> Result<()> {
+        let Some(color) = self.color else { return Ok(()) };
+        let brightest = color.max_element() / luminance(color);
+        if !(color.min_element() >= 0.0 && brightest.is_finite()) {
+            return Err(Error::value(format!(
+                "roller blind: colour {color}; expected three numbers of 0 or more, not all of them 0"
+            )));
+        }
+        let scattered = self.normal_hemispherical - self.normal_normal;
+        for (side, reflectance) in ["front", "back"].iter().zip(self.reflectance) {
+            let sum = self.normal_normal + brightest * (scattered + reflectance);
+            if sum > 1.0 {
+                return Err(Error::value(format!(
+                    "roller blind: in the brightest channel of its colour transmittance and reflectance of the {side} add up \
+                     to {sum:.3}; expected no more than 1: a paler colour"
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// CIE X and Z over Y of the colour.
+    fn tint(&self) -> Option<[f64; 2]> {
+        let xyz = rgb_to_xyz(self.color?);
+        Some([xyz.x / xyz.y, xyz.z / xyz.y])
     }
 
     /// Cut-off angle [deg]: 65 for the tightest fabrics, and wider with the openness.
@@ -159,6 +190,14 @@ impl Product for Hung {
     fn reflectance(&self) -> [f64; 2] {
         self.blind.reflectance
     }
+
+    fn tint(&self) -> Option<[f64; 2]> {
+        self.blind.tint()
+    }
+
+    fn reflected_tint(&self) -> Option<[f64; 2]> {
+        self.blind.tint()
+    }
 }
 
 #[cfg(test)]
@@ -166,7 +205,7 @@ impl Product for Hung {
 mod tests {
     use super::*;
     use crate::{Mode, PeakRule};
-    use sunpeak_core::{Vec3, luminance};
+    use sunpeak_core::Vec3;
 
     fn blind() -> RollerBlind {
         RollerBlind {
@@ -174,6 +213,7 @@ mod tests {
             normal_hemispherical: 0.05,
             reflectance: [0.4, 0.35],
             cutoff_deg: None,
+            color: None,
         }
     }
 
@@ -245,5 +285,28 @@ mod tests {
         );
         assert!(refused(RollerBlind { normal_hemispherical: 5.0, ..blind() }).contains("expected 0 to 1"));
         assert!(refused(RollerBlind { cutoff_deg: Some(95.0), ..blind() }).contains("cut-off"));
+        let color = Some(Rgb::new(0.9, 0.1, 0.0));
+        assert!(refused(RollerBlind { color, ..blind() }).contains("a paler colour"));
+        assert!(refused(RollerBlind { color: Some(Rgb::ZERO), ..blind() }).contains("not all of them 0"));
+    }
+
+    /// Holes have no colour: what goes straight is gray, all else has the threads' ratios of red to green to blue.
+    #[test]
+    fn the_colour_is_that_of_the_threads() {
+        let color = Rgb::new(0.5, 0.4, 0.2);
+        let blind = RollerBlind { color: Some(color), ..blind() };
+        for basis in ["klems-quarter", "t3-1024"] {
+            let bsdf = blind.tabulate_exact(basis.parse().unwrap(), &Work::default()).unwrap();
+            let of_threads = color / luminance(color);
+            let through = bsdf.through(Vec3::Z, PeakRule::Split);
+            assert!((through / luminance(through)).abs_diff_eq(Rgb::ONE, 1e-6));
+            for (mode, rule) in [(Mode::Reflection, PeakRule::Off), (Mode::Transmission, PeakRule::Split)] {
+                let scattered = bsdf.hemispherical_smooth(Vec3::Z, mode, rule);
+                assert!(
+                    (scattered / luminance(scattered)).abs_diff_eq(of_threads, 2e-3),
+                    "{basis} {mode:?} {scattered}"
+                );
+            }
+        }
     }
 }

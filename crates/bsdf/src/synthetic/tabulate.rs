@@ -58,7 +58,7 @@ pub fn tabulate_watched(
     })
 }
 
-/// Tabulate a gray product and keep its through part as it is known, rather than what a split would find in the table.
+/// Tabulate a product and keep its through part as it is known, rather than what a split would find in the table.
 ///
 /// # Errors
 /// Where the product is not the same at all azimuths and the basis is; when the work is stopped.
@@ -70,7 +70,7 @@ pub fn tabulate_exact(product: &dyn Product, basis: Basis, work: &Work) -> Resul
         let scattered = work.columns(("scattered", front), averages.incident.len(), scattered)?;
         let deltas: Vec<Delta> =
             (0..scattered.len()).into_par_iter().map(|column| averages.delta(column)).collect();
-        Ok(with_exact_peak(basis, |column, cell| scattered[column][cell], &deltas))
+        Ok(with_exact_peak(basis, |column, cell| scattered[column][cell], &deltas, product.tint()))
     })
 }
 
@@ -96,7 +96,7 @@ fn with_sides(
     let back = if alike { front.clone() } else { Arc::new(side(&OtherSide(product), false)?) };
     let [reflection_front, reflection_back] = product
         .reflectance()
-        .map(|reflectance| Some(Arc::new(Distribution::new(diffuse(reflectance, basis), None))));
+        .map(|reflectance| Some(Arc::new(diffuse(reflectance, product.reflected_tint(), basis))));
     let document = Document {
         name: product.name(),
         manufacturer: "Sunpeak (synthetic)".into(),
@@ -112,8 +112,13 @@ fn with_sides(
     Ok(Bsdf::from_sides(document, sides))
 }
 
-fn diffuse(reflectance: f64, basis: Basis) -> Table {
-    let value = (reflectance / PI) as f32;
+fn diffuse(reflectance: f64, tint: Option<[f64; 2]>, basis: Basis) -> Distribution {
+    let table = |value: f64| constant(value as f32, basis);
+    let color = tint.map(|xz| xz.map(|tint| table(tint * reflectance / PI).into_values()));
+    Distribution::new(table(reflectance / PI), color)
+}
+
+fn constant(value: f32, basis: Basis) -> Table {
     match basis.patches() {
         Some(basis) => {
             let values = vec![value; basis.len() * basis.len()];

@@ -94,7 +94,7 @@ impl System {
         };
         let transmission = |from: usize| {
             let deltas = delta(&|o| o.t[from]);
-            Some(Arc::new(with_exact_peak(basis, value(from, 1 - from), &deltas)))
+            Some(Arc::new(with_exact_peak(basis, value(from, 1 - from), &deltas, None)))
         };
         let reflection = |from: usize| {
             let deltas = delta(&|o| o.r[from]);

@@ -35,6 +35,8 @@ pub(super) struct Cell {
     max: Vec3,
     edges: Edges,
     margin: f64,
+    /// Past these z, seen from the geometry's middle, nothing is left to meet.
+    reach: [f64; 2],
 }
 
 /// What comes next on a ray's way.
@@ -68,7 +70,7 @@ impl Cell {
         }
         let margin =
             (MARGIN * size.max_element().max(min.abs().max(max.abs()).max_element())).max(LEAST_MARGIN);
-        Ok(Self { min, max, edges, margin })
+        Ok(Self { min, max, edges, margin, reach: [all.min.z + 0.5 * margin, all.max.z - 0.5 * margin] })
     }
 
     pub fn corners(&self) -> [Vec3; 2] {
@@ -84,6 +86,9 @@ impl Cell {
 
     /// Follow a ray to the next surface; it starts anew where it crosses a side of a periodic box. `passed` grows by the ways before.
     pub fn next(&self, world: &World, ray: &mut Ray, passed: &mut f64) -> Next {
+        if self.has_left(ray) {
+            return Next::Out;
+        }
         if self.edges == Edges::Open {
             return world.accel.closest(ray, f64::INFINITY).map_or(Next::Out, Next::Hit);
         }
@@ -101,6 +106,12 @@ impl Cell {
             *ray = Ray::new(origin - ray.direction * self.margin, ray.direction);
         }
         Next::Lost
+    }
+
+    /// Is a ray on its way out, with all of the geometry behind it?
+    pub fn has_left(&self, ray: &Ray) -> bool {
+        let (from, to) = (ray.origin.z, ray.direction.z);
+        from > self.reach[1] && to > 0.0 || from < self.reach[0] && to < 0.0
     }
 
     /// The place in the box of a point beside it.

@@ -11,9 +11,9 @@ use sunpeak_core::{Control, Result, Rgb, Sampler, luminance};
 /// Rays come in so many independent sets of well-distributed points, so that what they differ by tells the error.
 const SETS: u64 = 8;
 
-/// Walks that set out where a ray meets a surface. More share the ray's first part and its point; their directions are distributed
-/// well together.
-const BRANCHES: u64 = 8;
+/// Walks that set out where a ray meets a surface: one from which they leave the product at once, which is cheap and all that they do
+/// there, and others. More share the ray's first part and its point; their directions are distributed well together.
+const BRANCHES: [u64; 2] = [8, 16];
 
 /// Sets of straight rays alone, at most, over those of all rays: they are short, and what goes straight lands in one cell.
 const MOST_STRAIGHT: usize = 4;
@@ -217,7 +217,7 @@ impl Tracer<'_> {
         so_far.transmission.sets.push(0.0);
         so_far.reflection.sets.push(0.0);
         let (mut straight_on, mut undeflected) = (Rgb::ZERO, Rgb::ZERO);
-        let (mut arrived, mut met) = (Arrived::default(), 0);
+        let (mut arrived, mut drawn) = (Arrived::default(), 0_u64);
         for index in 0..in_set {
             if index % CHECK_EVERY == 0 {
                 control.check()?;
@@ -242,8 +242,11 @@ impl Tracer<'_> {
             } else {
                 // One point after the other, whichever rays meet something: so directions stay well distributed.
                 let branch = |number: u64| {
-                    met += u64::from(number == 0);
-                    Sampler::new(self.effort.seed, second, (met - 1) * BRANCHES + number)
+                    if number == 0 {
+                        drawn = drawn.next_multiple_of(BRANCHES[0]);
+                    }
+                    drawn += 1;
+                    Sampler::new(self.effort.seed, second, drawn - 1)
                 };
                 straight_on += fork(self.world, self.cell, ray, &mut sampler, BRANCHES, branch, count);
             }

@@ -2,7 +2,7 @@
 
 use super::cell::{Cell, Next};
 use crate::World;
-use crate::material::{Arrival, Flight, Inside, Material, Smooth};
+use crate::material::{Arrival, Flight, Inside, Material, Scattering, Smooth};
 use crate::shapes::Ray;
 use crate::world::Seen;
 use sunpeak_core::{Rgb, Sampler, Vec3, luminance};
@@ -76,14 +76,15 @@ pub(super) fn walk(world: &World, cell: &Cell, ray: Ray, sampler: &mut Sampler) 
 }
 
 /// One ray, not drawn but split: what goes straight on is followed to its end and returned, and from each surface that it meets
-/// walks set out with the rest, as many as `branches` where it is scattered, each with its part. `branch` gives the points of the
+/// walks set out with the rest, each with its part, where it is scattered: as many as `branches` says of a surface that walks leave
+/// the product from at once, and of others. `branch` gives the points of the
 /// walks, numbered from 0 at each surface. Not for scenes with mist, which has no surface.
 pub(super) fn fork(
     world: &World,
     cell: &Cell,
     ray: Ray,
     sampler: &mut Sampler,
-    branches: u64,
+    branches: [u64; 2],
     mut branch: impl FnMut(u64) -> Sampler,
     mut arrived: impl FnMut(End),
 ) -> Rgb {
@@ -109,13 +110,17 @@ pub(super) fn fork(
             Seen::Surface(material) => {
                 stem.absorb(material, &arrival, length);
                 let scattering = material.scatter(&arrival, true);
+                let back = Ray::new(arrival.point, -stem.ray.direction);
+                let most = branches[usize::from(!stem.cell.has_left(&back))];
                 // Where nothing is scattered, all branches would take the same ways.
-                let branches = if scattering.smooth.albedo() > 0.0 { branches } else { 1 };
+                let branches = if scattering.smooth.albedo() > 0.0 { most } else { 1 };
                 let share = 1.0 / branches as f64;
                 for number in 0..branches {
                     let mut own = branch(number);
                     let mut walker = Walker { carried: stem.carried * share, share, ..stem };
-                    if walker.go_on(material, &arrival, false, &mut own) && walker.survives(&mut own) {
+                    if walker.go_on(material, &scattering, &arrival, false, &mut own)
+                        && walker.survives(&mut own)
+                    {
                         arrived(walker.run(&mut own));
                     }
                 }
@@ -224,7 +229,9 @@ impl<'w> Walker<'w> {
                 Seen::Emitter(_) => return End::Absorbed,
                 Seen::Surface(material) => {
                     self.absorb(material, &arrival, length);
-                    if !self.go_on(material, &arrival, true, sampler) || !self.survives(sampler) {
+                    let scattering = material.scatter(&arrival, self.way < Way::Scattered);
+                    if !self.go_on(material, &scattering, &arrival, true, sampler) || !self.survives(sampler)
+                    {
                         return End::Absorbed;
                     }
                 }
@@ -275,11 +282,11 @@ impl<'w> Walker<'w> {
     fn go_on(
         &mut self,
         material: &Material,
+        scattering: &Scattering,
         arrival: &Arrival,
         may_pass: bool,
         sampler: &mut Sampler,
     ) -> bool {
-        let scattering = material.scatter(arrival, self.way < Way::Scattered);
         let [straight, mirrored] = [scattering.straight, scattering.mirrored].map(luminance);
         let straight = if may_pass { straight } else { 0.0 };
         let [first, second] = scattering.refracted.map(|way| way.map_or(0.0, |(_, share)| luminance(share)));
