@@ -266,6 +266,7 @@ def main() -> None:
     parser.add_argument("--limit-s", type=float, default=300.0, help="CPU time of one reference, and of one rpict [s]")
     parser.add_argument("--work", type=Path, help="folder for rooms and references, kept (else a temporary one)")
     parser.add_argument("--out", type=Path, help="folder for the raw results")
+    parser.add_argument("--qualities", nargs="+", choices=QUALITIES, default=list(QUALITIES), help="of rpict")
     parser.add_argument("--ours-only", action="store_true", help="leave rpict out")
     parser.add_argument(
         "--rpict-only", action="store_true", help="only run rpict, one at a time, and keep its pictures"
@@ -279,7 +280,7 @@ def main() -> None:
                 continue
             folder = work / room.name.replace(", ", "-").replace(" ", "-")
             if options.rpict_only:
-                for quality in QUALITIES:
+                for quality in options.qualities:
                     print(room.name, run_rpict(room, folder, quality, options.limit_s), flush=True)
                 continue
             results.append(measure(room, folder, options))
@@ -306,7 +307,7 @@ def measure(room: BenchRoom, folder: Path, options: argparse.Namespace) -> dict[
         return {"room": room.name, "ours": ours}
     octree_of(room, folder)
     with ThreadPoolExecutor(2) as two:
-        theirs = list(two.map(lambda quality: measured.theirs(quality, options.limit_s), QUALITIES))
+        theirs = list(two.map(lambda quality: measured.theirs(quality, options.limit_s), options.qualities))
     for run in theirs:
         if not run["finished"]:
             print(f"  rpict, {run['quality']:<16} {run['cpu_s']:>8.1f} s, not finished")

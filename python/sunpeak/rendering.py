@@ -53,9 +53,10 @@ def render(
     It takes `samples` paths for a pixel in the mean (64 unless told otherwise; noisy blocks of pixels get more, others
     less), or as many as fit in `time` seconds, or as many as bring the error below `error` [-] with 95 % confidence:
     the root mean square over blocks of pixels, about 3 degrees wide (a power of two, 4 to 32 pixels), of the error of
-    their luminance, over the mean luminance of all (0.01 is 1 %). The picture says what was reached (`Picture.error`). `until` asks for a glare number instead:
-    `"class"` until the comfort class cannot change, `("dgp", 0.005)` or `("ev", 0.01)` until the 95 % interval of DGP,
-    or that of Ev over Ev, is no wider than that to each side. With several, whatever comes first ends it.
+    their luminance, over the mean luminance of all (0.01 is 1 %). The picture says what was reached (`Picture.error`).
+    `until` asks for a glare number instead: `"class"` until the comfort class cannot change, `("dgp", 0.005)` or
+    `("ev", 0.01)` until the 95 % interval of DGP, or that of Ev over Ev, is no wider than that to each side. With
+    several, whatever comes first ends it.
 
     The same seed and number of samples give the same picture on any number of `threads` (None: all cores).
     `max_bounces` limits diffuse bounces, as Radiance's `-ab`; None is no limit. `ambient` (three channels

@@ -8,7 +8,7 @@
 use sunpeak_core::{Rgb, luminance};
 
 /// Passes and samples of an item before an estimate of the error means something; and of a group, of which either suffices.
-const LEAST_PASSES: usize = 5;
+const LEAST_PASSES: usize = 4;
 const LEAST_SAMPLES: u32 = 16;
 const LEAST_OF_GROUP: f64 = 1024.0;
 
