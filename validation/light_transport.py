@@ -30,7 +30,6 @@ sys.path.insert(0, str(ROOT / "benches"))
 from transport.rooms import BenchRoom, rooms  # noqa: E402
 
 TARGET = Path(__file__).with_suffix(".json")
-BLOCK = 8
 
 COVERAGE_ROOMS, COVERAGE_SEEDS, COVERAGE_SIZE, COVERAGE_ERROR = ("demo, t3, PE", "demo, Klems", "deep"), 100, 96, 0.06
 SIZES = (200, 400, 800, 1200, 2000)
@@ -59,10 +58,10 @@ def named(*names: str) -> list[Room]:
     return [Room(room) for room in rooms() if not names or room.name in names]
 
 
-def block_means(luminance: Any) -> Any:
-    """Of blocks [cd/m²]."""
-    n = luminance.shape[0] // BLOCK
-    return luminance.reshape(n, BLOCK, n, BLOCK).mean(axis=(1, 3))
+def block_means(luminance: Any, rows: int) -> Any:
+    """Of so many rows and columns of blocks [cd/m²]."""
+    edge = luminance.shape[0] // rows
+    return luminance.reshape(rows, edge, rows, edge).mean(axis=(1, 3))
 
 
 def without_suns(room: Room, picture: sp.Picture) -> Any:
@@ -84,7 +83,8 @@ def covered(room: Room) -> dict[str, Any]:
     """Of one room."""
     pictures = [room.render(COVERAGE_SIZE, error=COVERAGE_ERROR, seed=seed) for seed in range(COVERAGE_SEEDS)]
     n = COVERAGE_SEEDS
-    blocks = np.array([block_means(without_suns(room, picture)) for picture in pictures])
+    rows = {len(picture.block_errors) for picture in pictures if picture.block_errors is not None}
+    blocks = np.array([block_means(without_suns(room, picture), *rows) for picture in pictures])
     # To the mean of the others, which has an error of its own.
     others = (blocks.sum(axis=0) - blocks) / (n - 1)
     errors = np.sqrt(((blocks - others) ** 2).mean(axis=(1, 2)) * (n - 1) / n) / blocks.mean()
