@@ -183,7 +183,7 @@ class TestRender:
         pictures = [sp.render(world, view, (64, 64), error=0.15, seed=seed) for seed in range(12)]
         errors = [picture.error for picture in pictures]
         assert all(error is not None and error <= 0.15 for error in errors)
-        blocks = np.array([p.luminance().reshape(8, 8, 8, 8).mean(axis=(1, 3)) for p in pictures])
+        blocks = np.array([p.luminance().reshape(16, 4, 16, 4).mean(axis=(1, 3)) for p in pictures])
         stated = np.array([picture.block_errors for picture in pictures])
         assert stated.shape == blocks.shape
         assert np.mean(stated**2) == pytest.approx(blocks.var(axis=0, ddof=1).mean(), rel=0.3)
