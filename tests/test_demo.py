@@ -17,7 +17,7 @@ BASES = ("klems", *TREES)
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory, sunpeak: CommandLine) -> Path:
     folder = tmp_path_factory.mktemp("demo")
-    sunpeak("demo", "-o", folder, "--size", "300x300", "--samples", 4)
+    sunpeak("demo", "-o", folder, "--size", "200x200", "--samples", 16)
     return folder
 
 
@@ -66,7 +66,7 @@ def test_pictures_and_report_are_written(folder: Path) -> None:
     for basis in BASES:
         for peak in ("off", "split"):
             picture = Picture.load(folder / f"{basis}_{peak}.hdr")
-            assert picture.shape == (300, 300)
+            assert picture.shape == (200, 200)
             assert len(picture.exact_sources) == (peak == "split")
             for kind in ("", "_false"):
                 assert (folder / f"{basis}_{peak}{kind}.png").read_bytes().startswith(b"\x89PNG")
