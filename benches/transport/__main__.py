@@ -35,64 +35,16 @@ Floats = npt.NDArray[np.float64]
 SIZE, BLOCKS = 240, 60
 RADIANCE = Path(pyradiance.__file__).parent
 COMMON = ("-ps", "1", "-pt", "0", "-t", "0")
+WHOLE = ("-aa", "0", "-as", "0", "-lr", "-20", "-lw", "1e-7", "-st", "0")
+"""Neither cache nor truncation."""
+
 QUALITIES: dict[str, tuple[str, ...]] = {
     "cache, low": ("-ab", "3", "-aa", ".2", "-ar", "64", "-ad", "512", "-as", "128", "-lw", "2e-3"),
     "cache, middle": ("-ab", "5", "-aa", ".1", "-ar", "128", "-ad", "2048", "-as", "512", "-lw", "5e-5"),
     "cache, high": ("-ab", "7", "-aa", ".07", "-ar", "256", "-ad", "8192", "-as", "2048", "-lw", "1e-5"),
-    "no cache, low": (
-        "-ab",
-        "5",
-        "-aa",
-        "0",
-        "-as",
-        "0",
-        "-ad",
-        "8",
-        "-lr",
-        "-20",
-        "-lw",
-        "1e-7",
-        "-st",
-        "0",
-        "-ss",
-        "16",
-    ),
-    "no cache, middle": (
-        "-ab",
-        "6",
-        "-aa",
-        "0",
-        "-as",
-        "0",
-        "-ad",
-        "32",
-        "-lr",
-        "-20",
-        "-lw",
-        "1e-7",
-        "-st",
-        "0",
-        "-ss",
-        "32",
-    ),
-    "no cache, high": (
-        "-ab",
-        "7",
-        "-aa",
-        "0",
-        "-as",
-        "0",
-        "-ad",
-        "128",
-        "-lr",
-        "-20",
-        "-lw",
-        "1e-7",
-        "-st",
-        "0",
-        "-ss",
-        "64",
-    ),
+    "no cache, low": (*WHOLE, "-ab", "5", "-ad", "8", "-ss", "16"),
+    "no cache, middle": (*WHOLE, "-ab", "6", "-ad", "32", "-ss", "32"),
+    "no cache, high": (*WHOLE, "-ab", "7", "-ad", "128", "-ss", "64"),
 }
 OUR_SAMPLES = (1, 2, 4, 8, 16, 32)
 

@@ -7,8 +7,10 @@
 
 use sunpeak_core::{Rgb, luminance};
 
-/// Passes and samples of an item before an estimate of the error means something; and of a group, of which either suffices.
+/// Passes before an estimate of the error means something.
 const LEAST_PASSES: usize = 4;
+
+/// Samples of an item before it does, or else of the largest group: so many that what is seldom met is not missed by all passes alike.
 const LEAST_SAMPLES: u32 = 16;
 const LEAST_OF_GROUP: f64 = 1024.0;
 

@@ -5,6 +5,7 @@
 //! highlights have no words and are left out. Lights are black, as for a virtual goniophotometer.
 
 use crate::{Material, Modifier, ModifierId, ModifierKind, Scene, Shape, Surface, Ward};
+use std::collections::HashSet;
 use std::fmt::Write;
 use sunpeak_core::{Error, Result, Rgb, Vec3, gray, luminance, rgb_to_xyz};
 
@@ -17,7 +18,7 @@ impl Scene {
     /// # Errors
     /// With file and line of a material that the format has no words for, or of a surface that it cannot hold.
     pub fn to_mgf(&self, offset: Vec3) -> Result<String> {
-        let mut out = Writer { offset, text: String::new(), vertices: 0 };
+        let mut out = Writer { offset, text: String::new(), defined: HashSet::new(), vertices: 0 };
         let mut current = None;
         for surface in &self.surfaces {
             let Some((id, material)) = self.material(surface.modifier) else { continue };
@@ -114,6 +115,7 @@ fn pane(pass: Rgb, index: f64) -> [Rgb; 2] {
 struct Writer {
     offset: Vec3,
     text: String,
+    defined: HashSet<ModifierId>,
     vertices: usize,
 }
 
@@ -121,10 +123,9 @@ impl Writer {
     /// Name a material, or define it where it comes first.
     fn material(&mut self, id: ModifierId, modifier: &Modifier) -> Result<()> {
         let name = format!("{}.{}", word(&modifier.name), id.0);
-        let head = format!("m {name}\n");
-        let definition = format!("m {name} =\n");
-        if self.text.contains(&definition) {
-            self.text.push_str(&head);
+        // Writing to a string cannot fail.
+        if !self.defined.insert(id) {
+            let _ = writeln!(self.text, "m {name}");
             return Ok(());
         }
         let optics = match &modifier.kind {
@@ -141,7 +142,7 @@ impl Writer {
                 ),
             )
         })?;
-        self.text.push_str(&definition);
+        let _ = writeln!(self.text, "m {name} =");
         let _ = match optics.index {
             Some(index) => writeln!(self.text, "\tsides 1\n\tir {index} 0"),
             None => writeln!(self.text, "\tsides 2"),
@@ -160,7 +161,6 @@ impl Writer {
         }
         let xyz = rgb_to_xyz(if share == Rgb::ZERO { Rgb::ONE } else { share });
         let sum = xyz.element_sum();
-        // Writing to a string cannot fail.
         let _ = write!(
             self.text,
             "\tc\n\t\tcxy {:.9} {:.9}\n\t{name} {:.6}",
