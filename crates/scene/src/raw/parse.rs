@@ -6,7 +6,7 @@ use super::{
     cursor::{Cursor, Mark, Word},
     parse_integer, parse_real,
 };
-use std::{path::Path, sync::Arc};
+use std::{borrow::Cow, fmt, path::Path, sync::Arc};
 use sunpeak_core::{Error, Result};
 
 /// Counts are believed only so far before the arguments are seen.
@@ -49,13 +49,26 @@ fn begins_primitive(line: &[u8]) -> bool {
     first[0] == b'!' || second.is_some_and(is_type)
 }
 
+/// A primitive as messages call it: put into words only where there is something to say.
+#[derive(Clone)]
+struct Named<'t> {
+    kind: &'static str,
+    name: Cow<'t, str>,
+}
+
+impl fmt::Display for Named<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{} \"{}\"", self.kind, self.name)
+    }
+}
+
 struct Parser<'t> {
     cursor: Cursor<'t>,
     directory: Arc<Path>,
     /// The modifier read last: surfaces of the same material follow each other and share its name.
     modifier: Arc<str>,
     /// The primitive read last, for a hint: its argument count may be wrong.
-    last: Option<String>,
+    last: Option<Named<'t>>,
 }
 
 impl<'t> Parser<'t> {
@@ -97,15 +110,15 @@ impl<'t> Parser<'t> {
     }
 
     fn primitive(&mut self) -> Result<Primitive> {
-        let modifier = self.expect("a modifier")?;
-        let kind_word = self.expect("a primitive's type")?;
+        let modifier = self.expect(&"a modifier")?;
+        let kind_word = self.expect(&"a primitive's type")?;
         let Some(kind) = PrimitiveType::find(&kind_word.text) else {
             return Err(self.unknown_type(&modifier, &kind_word));
         };
-        let name = self.expect(&format!("the name of this {}", kind.name))?;
-        let what = format!("{} \"{}\"", kind.name, name.text);
+        let name = self.expect(&format_args!("the name of this {}", kind.name))?.text;
+        let what = Named { kind: kind.name, name: name.clone() };
         let (strings, reals) = if kind.class == Class::Alias {
-            let reference = self.expect(&format!("the name that {what} stands for"))?;
+            let reference = self.expect(&format_args!("the name that {what} stands for"))?;
             (vec![reference.text.into_owned()], Vec::new())
         } else {
             self.arguments(&what)?
@@ -115,7 +128,7 @@ impl<'t> Parser<'t> {
         Ok(Primitive {
             modifier: self.share(&modifier.text),
             kind,
-            name: name.text.into_owned(),
+            name: name.into_owned(),
             strings,
             reals,
             location,
@@ -130,7 +143,7 @@ impl<'t> Parser<'t> {
         self.modifier.clone()
     }
 
-    fn arguments(&mut self, what: &str) -> Result<(Vec<String>, Vec<f64>)> {
+    fn arguments(&mut self, what: &Named) -> Result<(Vec<String>, Vec<f64>)> {
         let strings = self.list(what, "string", |word| Some(word.to_string()))?;
         let (integers, mark) = self.count(what, "integer")?;
         if integers != 0 {
@@ -141,7 +154,7 @@ impl<'t> Parser<'t> {
         Ok((strings, self.list(what, "real", parse_real)?))
     }
 
-    fn list<T>(&mut self, what: &str, kind: &str, convert: impl Fn(&str) -> Option<T>) -> Result<Vec<T>> {
+    fn list<T>(&mut self, what: &Named, kind: &str, convert: impl Fn(&str) -> Option<T>) -> Result<Vec<T>> {
         let (count, counted) = self.count(what, kind)?;
         let mut values = Vec::with_capacity(count.min(MAX_PREALLOCATED));
         for i in 1..=count {
@@ -163,17 +176,18 @@ impl<'t> Parser<'t> {
         Ok(values)
     }
 
-    fn count(&mut self, what: &str, kind: &str) -> Result<(usize, Mark)> {
-        let wanted = format!("the number of {kind} arguments of {what}");
-        let word = self.expect(&wanted)?;
+    fn count(&mut self, what: &Named, kind: &str) -> Result<(usize, Mark)> {
+        let word = self.expect(&format_args!("the number of {kind} arguments of {what}"))?;
         let count = parse_integer(&word.text).and_then(|n| usize::try_from(n).ok());
         let count = count.ok_or_else(|| {
-            self.cursor.error(word.mark, format!("expected {wanted}, found \"{}\"", word.text))
+            let message =
+                format!("expected the number of {kind} arguments of {what}, found \"{}\"", word.text);
+            self.cursor.error(word.mark, message)
         })?;
         Ok((count, word.mark))
     }
 
-    fn expect(&mut self, wanted: &str) -> Result<Word<'t>> {
+    fn expect(&mut self, wanted: &dyn fmt::Display) -> Result<Word<'t>> {
         match self.cursor.word()? {
             Some(word) => Ok(word),
             None => Err(self
