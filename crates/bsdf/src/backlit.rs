@@ -26,7 +26,7 @@ const AZIMUTHS: usize = 128;
 const KEPT_AZIMUTHS: usize = 64;
 
 /// Parts a side of the whole square: no larger than one are the pieces of a cell that are counted into rings and azimuths.
-const PARTS: f64 = 256.0;
+const PARTS: usize = 256;
 
 /// Against the table's direction: one look a side of a bin for so many cells a side of the tree, and at most so many.
 const LOOKS_PER_SIDE: f64 = 16.0;
@@ -219,10 +219,15 @@ fn polar(oriented: &Oriented, residual: bool, rings: usize, light: impl Fn(DVec2
     for ring in 0..RINGS {
         let angle = bin_angle(ring);
         for k in 0..2 * AZIMUTHS {
-            let light = light(point(ring as f64 + 0.5, (k % AZIMUTHS) as f64 + 0.5)) * angle;
+            if k >= AZIMUTHS {
+                lights.iter_mut().for_each(|channel| channel.push(channel[channel.len() - AZIMUTHS]));
+                continue;
+            }
+            let light = light(point(ring as f64 + 0.5, k as f64 + 0.5)) * angle;
             lights.iter_mut().zip(light.to_array()).for_each(|(channel, value)| channel.push(value));
         }
     }
+    let bins = if oriented.reversed { Vec::new() } else { bins_of_parts() };
     let step = AZIMUTHS / KEPT_AZIMUTHS;
     let mut values = Vec::with_capacity(rings * KEPT_AZIMUTHS);
     for ring in 0..rings {
@@ -230,7 +235,7 @@ fn polar(oriented: &Oriented, residual: bool, rings: usize, light: impl Fn(DVec2
         let table = if oriented.reversed {
             looked_at(oriented, residual, p_in)
         } else {
-            flux(oriented, residual, p_in)
+            flux(oriented, residual, p_in, &bins)
         };
         let channels: [Vec<f64>; 3] = std::array::from_fn(|c| table.iter().map(|v| v[c]).collect());
         for turn in 0..KEPT_AZIMUTHS {
@@ -254,26 +259,41 @@ fn bin_angle(ring: usize) -> f64 {
     PI * (2 * ring + 1) as f64 / (RINGS * RINGS * AZIMUTHS) as f64
 }
 
+/// The bin of a point of the exiting disk.
+fn bin_at(point: DVec2) -> usize {
+    let ring = ((point.length() * RINGS as f64) as usize).min(RINGS - 1);
+    let turn = point.y.atan2(point.x) / TAU;
+    let azimuth = (((turn - turn.floor()) * AZIMUTHS as f64) as usize).min(AZIMUTHS - 1);
+    ring * AZIMUTHS + azimuth
+}
+
+/// The bins of the middles of all parts of the square.
+fn bins_of_parts() -> Vec<usize> {
+    let at = |i: usize| (i as f64 + 0.5) / PARTS as f64;
+    (0..PARTS * PARTS).map(|k| bin_at(square_to_disk([at(k / PARTS), at(k % PARTS)]).into())).collect()
+}
+
 /// Mean values in the bins, by what each cell of the column scatters into them: no flux is lost, however small a cell is.
-fn flux(oriented: &Oriented, residual: bool, p_in: DVec2) -> Vec<Rgb> {
+/// `bins` are those of the parts.
+fn flux(oriented: &Oriented, residual: bool, p_in: DVec2, bins: &[usize]) -> Vec<Rgb> {
     let (table, columns) = (oriented.distribution.luminous(), oriented.distribution.columns());
     let column = columns.index(p_in);
-    let mut bins = vec![Rgb::ZERO; RINGS * AZIMUTHS];
+    let mut sums = vec![Rgb::ZERO; RINGS * AZIMUTHS];
     for cell in table.cells(columns, column) {
-        let value = oriented.cell_value(column, cell.index, residual);
-        let size = cell.square().map_or(1.0, |square| f64::from(square.size));
-        let parts = (size * PARTS).ceil() as usize;
-        let share = cell.projected_solid_angle / (parts * parts) as f64;
-        for part in 0..parts * parts {
-            let within = |k: usize| (k as f64 + 0.5) / parts as f64;
-            let p_out = table.point(&cell, [within(part / parts), within(part % parts)]);
-            let ring = ((p_out.length() * RINGS as f64) as usize).min(RINGS - 1);
-            let turn = p_out.y.atan2(p_out.x) / TAU;
-            let azimuth = (((turn - turn.floor()) * AZIMUTHS as f64) as usize).min(AZIMUTHS - 1);
-            bins[ring * AZIMUTHS + azimuth] += value * (share / bin_angle(ring));
+        let flux = oriented.cell_value(column, cell.index, residual) * cell.projected_solid_angle;
+        // A power of two of parts, or smaller than one.
+        let square = cell.square().filter(|square| square.size * PARTS as f32 >= 1.0);
+        match bounds(square, PARTS) {
+            Some([x0, y0, x1, y1]) => {
+                let share = flux / ((x1 - x0) * (y1 - y0)) as f64;
+                for x in x0..x1 {
+                    bins[x * PARTS + y0..x * PARTS + y1].iter().for_each(|&bin| sums[bin] += share);
+                }
+            }
+            None => sums[bin_at(table.point(&cell, [0.5, 0.5]))] += flux,
         }
     }
-    bins
+    sums.iter().enumerate().map(|(bin, &sum)| sum / bin_angle(bin / AZIMUTHS)).collect()
 }
 
 /// Mean values in the bins by looking at points of them: against the table's direction cells of the exiting side are no columns.

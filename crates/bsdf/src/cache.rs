@@ -26,8 +26,8 @@ use std::{
     time::SystemTime,
 };
 
-/// Files from this size on are kept [bytes]: a matrix of 145 patches a side on one side has half of it, and is read in 50 ms.
-const LEAST_FILE: u64 = 1 << 19;
+/// Files from this size on are kept [bytes]: a matrix of 145 patches a side has twice of it, and is split in a third of a second.
+const LEAST_FILE: u64 = 1 << 17;
 
 /// What the folder may hold [bytes].
 const LARGEST_FOLDER: u64 = 4 << 30;
