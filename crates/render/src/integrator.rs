@@ -5,6 +5,7 @@
 //! straight or mirrored all the way from the camera does a source count in full.
 
 mod direct;
+mod patches;
 mod path;
 
 use crate::accel::Hit;
@@ -16,6 +17,7 @@ use crate::material::{Air, Arrival, Flight, Material, Scattering, Smooth, Smooth
 use crate::shapes::Ray;
 use crate::world::{Facing, Seen};
 use crate::{RenderOptions, World};
+use patches::Tie;
 use path::{Departure, Path};
 use sunpeak_core::{Frame, Rgb, Sampler, Vec3, luminance};
 
@@ -41,6 +43,9 @@ pub(crate) struct Limits {
 }
 
 impl Limits {
+    /// A path may be as long as it likes.
+    pub const NONE: Self = Self { max_bounces: None, ambient: Rgb::ZERO, max_depth: u32::MAX };
+
     pub fn of(options: &RenderOptions) -> Self {
         Self { max_bounces: options.max_bounces, ambient: options.ambient, max_depth: options.max_depth }
     }
@@ -55,11 +60,12 @@ pub(crate) struct Integrator<'w> {
     pub exact_suns: Option<&'w ExactSuns>,
 }
 
-impl Integrator<'_> {
+impl<'w> Integrator<'w> {
     /// Radiance that arrives along the ray from surfaces before `reach` (and from infinity if that is infinite).
     pub fn radiance(&self, ray: Ray, reach: f64, sampler: &mut Sampler) -> Rgb {
         let inside = self.world.inside_at(&ray);
-        self.trace(vec![Path::from_camera(ray, reach, inside)], sampler)
+        let tie = self.tie(sampler);
+        self.trace(vec![Path::from_camera(ray, reach, inside)], &tie, sampler)
     }
 
     /// Irradiance [W/m²] on the front of a surface element.
@@ -68,25 +74,27 @@ impl Integrator<'_> {
         let ray = Ray::new(point, -normal);
         let mut path = Path::from_camera(ray, f64::INFINITY, self.world.inside_at(&ray));
         let mut branches = Vec::new();
-        let direct = self.direct(&path, &sensor, sampler);
+        let tie = self.tie(sampler);
+        let direct =
+            self.direct(&path, &sensor, sampler) + self.light_of_patches(&path, &sensor, &tie, sampler);
         if self.scatter(&mut path, &sensor, &mut branches, sampler) {
             branches.push(path);
         }
-        direct + path.ambient + self.trace(branches, sampler)
+        direct + path.ambient + self.trace(branches, &tie, sampler)
     }
 
-    fn trace(&self, mut branches: Vec<Path>, sampler: &mut Sampler) -> Rgb {
+    fn trace(&self, mut branches: Vec<Path>, tie: &Tie<'w>, sampler: &mut Sampler) -> Rgb {
         let mut sum = Rgb::ZERO;
         while let Some(mut path) = branches.pop() {
             path.ambient = Rgb::ZERO;
-            sum += self.follow(&mut path, &mut branches, sampler) + path.ambient;
+            sum += self.follow(&mut path, &mut branches, tie, sampler) + path.ambient;
         }
         sum
     }
 
     /// Follow a path to its end; where the camera sees straight through a surface that does something else too, the straight chain
     /// is put among the `branches`.
-    fn follow(&self, path: &mut Path, branches: &mut Vec<Path>, sampler: &mut Sampler) -> Rgb {
+    fn follow(&self, path: &mut Path, branches: &mut Vec<Path>, tie: &Tie<'w>, sampler: &mut Sampler) -> Rgb {
         let mut sum = Rgb::ZERO;
         while path.events <= self.limits.max_depth {
             let hit = self.world.accel.closest(&path.ray, path.reach);
@@ -134,6 +142,7 @@ impl Integrator<'_> {
                             path.throughput /= CORRECTED;
                         }
                         sum += path.throughput * self.direct_from_others(path, &met, sampler);
+                        sum += path.throughput * self.light_of_patches(path, &met, tie, sampler);
                     }
                     if !self.go_on(path, &met, branches, sampler) || !survives(path, sampler) {
                         return sum;
@@ -239,7 +248,12 @@ impl Integrator<'_> {
             path.bounces += u32::from(is_diffuse);
         }
         let point = met.arrival.point + met.scattering.smooth.offset(sample.direction);
-        let departure = Departure { point, pdf: sample.pdf * share, source_factor: sample.source_factor };
+        let departure = Departure {
+            point,
+            pdf: sample.pdf * share,
+            source_factor: sample.source_factor,
+            is_tied: self.is_tied(met),
+        };
         let mut known = Rgb::ZERO;
         if let Some(backlight) = met.backlight {
             known = self.known_light(backlight, sample, share) * glossy
@@ -284,12 +298,28 @@ struct Met<'w> {
     shares: [f64; 4],
     /// The far field behind it.
     backlight: Option<&'w Backlight>,
+    /// What it is a point of; `None` for a sensor and for air.
+    object: Option<u32>,
     /// Where light comes from, if that helps its lobes.
     guide: Option<GuideAt<'w>>,
 }
 
 impl<'w> Met<'w> {
     fn new(world: &'w World, hit: &Hit, material: &'w Material, arrival: Arrival, view: bool) -> Self {
+        Self::guided_by(world, hit, material, arrival, view, |point| {
+            world.guide.as_ref().map(|g| g.at(point))
+        })
+    }
+
+    /// With the guide from elsewhere, where it helps.
+    fn guided_by(
+        world: &'w World,
+        hit: &Hit,
+        material: &'w Material,
+        arrival: Arrival,
+        view: bool,
+        guide_at: impl FnOnce(Vec3) -> Option<GuideAt<'w>>,
+    ) -> Self {
         let object = world.object(hit);
         let scattering = material.scatter(&arrival, view);
         let refracted = scattering.refracted.iter().flatten().map(|(_, share)| luminance(*share)).sum();
@@ -300,8 +330,9 @@ impl<'w> Met<'w> {
             Smooth::Table(_) => world.backlights.of(hit.object, arrival.at_front()),
             _ => None,
         };
-        let guide = guide_of(world, &scattering.smooth, arrival.point);
-        Self { arrival, material: Some(material), is_flat, scattering, shares, backlight, guide }
+        let guide = if scattering.smooth.can_be_guided() { guide_at(arrival.point) } else { None };
+        let object = Some(hit.object);
+        Self { arrival, material: Some(material), is_flat, scattering, shares, backlight, object, guide }
     }
 
     /// The guide, and how many directions it is asked for here.
@@ -339,6 +370,7 @@ impl<'w> Met<'w> {
             scattering,
             shares: [0.0, 0.0, 0.0, 1.0],
             backlight: None,
+            object: None,
             guide: None,
         }
     }
@@ -375,6 +407,7 @@ impl<'w> Met<'w> {
             scattering,
             shares: [0.0, 0.0, 0.0, 1.0],
             backlight: None,
+            object: None,
             guide,
         }
     }

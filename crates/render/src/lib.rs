@@ -62,6 +62,7 @@ mod probe;
 mod sensor;
 mod shapes;
 mod stopping;
+mod sunlit;
 #[cfg(test)]
 mod testing;
 mod transmit;

@@ -169,6 +169,30 @@ impl World {
         Some((direction, before * share))
     }
 
+    /// Is nothing at all before the target?
+    pub(crate) fn is_clear(&self, ray: &Ray, target: &Target) -> bool {
+        let mut is_clear = true;
+        self.accel.each_crossing(ray, target.distance * (1.0 - SHORT_OF_TARGET), |hit| {
+            is_clear &= is_target(&hit, target);
+            is_clear
+        });
+        is_clear
+    }
+
+    /// Does an object let anything pass straight to the target, at a point? `None` if it bends it.
+    pub(crate) fn lets_pass(
+        &self,
+        object: u32,
+        point: Vec3,
+        target: &Target,
+        direction: Vec3,
+    ) -> Option<bool> {
+        match self.pass(&Hit { t: 0.0, object }, &Ray::new(point, direction), target) {
+            Pass::Straight(share, _) => Some(share != Rgb::ZERO),
+            Pass::Refracted(_) => None,
+        }
+    }
+
     fn pass(&self, hit: &Hit, ray: &Ray, target: &Target) -> Pass<'_> {
         let arrival = self.arrival(hit, ray);
         self.pass_material(self.material(self.object(hit).material), &arrival, target)

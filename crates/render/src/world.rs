@@ -12,6 +12,7 @@ use crate::material::{
     fault_of_orientation,
 };
 use crate::shapes::{COINCIDENT, MeshSurface, Ray};
+use crate::sunlit::SunPatches;
 use std::sync::atomic::{AtomicU64, Ordering};
 use sunpeak_bsdf::PeakRule;
 use sunpeak_core::{Result, Rgb, Vec3};
@@ -38,6 +39,8 @@ pub struct World {
     pub(crate) rays: AtomicU64,
     /// Where diffuse surfaces look for light, if there are shades.
     pub(crate) guide: Option<Guide>,
+    /// Where the sun comes in, if it does.
+    pub(crate) sun_patches: Option<SunPatches>,
     /// What shades give off in the light of sky and ground.
     pub(crate) backlights: Backlights,
     /// Meshes with normals or local coordinates at their vertices.

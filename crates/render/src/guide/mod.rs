@@ -20,13 +20,13 @@ const TO_SHADES: f64 = 0.3;
 const AGAINST_SUNS: f64 = 0.2;
 
 /// With more triangles of shades than this, looking at each of them costs more than it brings.
-const MAX_TRIANGLES: usize = 32;
+pub(crate) const MAX_TRIANGLES: usize = 32;
 
 /// With more pairs of sun and shade than this, likewise.
 const MAX_SCATTERED_SUNS: usize = 8;
 
 /// Directions worth trying from any diffuse surface.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Guide {
     shades: Vec<Triangle>,
     suns: Vec<ScatteredSun>,
@@ -44,7 +44,7 @@ pub(crate) struct Rates {
 }
 
 /// The guide as a point sees it.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct GuideAt<'g> {
     guide: &'g Guide,
     shades: ShadesAt<'g>,

@@ -12,7 +12,7 @@ const NOTHING_SR: f64 = 1e-9;
 const SMALL_SR: f64 = 1e-4;
 
 /// Shades as a point sees them.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct ShadesAt<'g> {
     triangles: &'g [Triangle],
     point: Vec3,

@@ -7,7 +7,7 @@ use crate::guide::{GuideAt, Rates};
 use crate::light::{LightSample, at_infinity, power_heuristic};
 use crate::material::{Arrival, Emitter, Inside, Smooth, SmoothValue, reflect};
 use crate::shapes::Ray;
-use crate::transmit::Target;
+use crate::transmit::{Target, Transmitted};
 use crate::world::{Facing, Object};
 use glam::DQuat;
 use sunpeak_core::{Rgb, Sampler, Vec3};
@@ -22,7 +22,7 @@ impl Integrator<'_> {
         self.direct_from_suns(path, met, sampler) + self.direct_from_others(path, met, sampler)
     }
 
-    fn receiver<'a, 'w>(&'a self, path: &Path, met: &'a Met<'w>) -> Receiver<'a, 'w> {
+    pub(super) fn receiver<'a, 'w>(&'a self, path: &Path, met: &'a Met<'w>) -> Receiver<'a, 'w> {
         Receiver {
             arrival: &met.arrival,
             smooth: &met.scattering.smooth,
@@ -43,7 +43,10 @@ impl Integrator<'_> {
         };
         for &sun in self.world.distant.suns() {
             if let Some(sample) = self.world.distant.sample_sun(sun, sampler.next_2d()) {
-                sum += self.received(&receiver, &sample, &Target::sun(sun, &sample));
+                let found = self.received(&receiver, &sample, &Target::sun(sun, &sample));
+                if found != Rgb::ZERO {
+                    sum += found * self.weight_against_ties(path, met, sun, &sample);
+                }
             }
         }
         sum += self.suns_in_mirrors(&receiver, sampler);
@@ -90,12 +93,23 @@ impl Integrator<'_> {
         }
         let ray = Ray::new(receiver.origin(sample.direction), sample.direction);
         let transmitted = self.world.transmitted(&ray, target, receiver.inside);
+        self.received_through(receiver, sample, &value, &transmitted)
+    }
+
+    /// The same where it is known what comes through.
+    pub(super) fn received_through(
+        &self,
+        receiver: &Receiver,
+        sample: &LightSample,
+        value: &SmoothValue,
+        transmitted: &Transmitted,
+    ) -> Rgb {
         let is_known = receiver.backlight.is_some() && sample.is_dome;
         if transmitted.is_blocked() && !is_known {
             return Rgb::ZERO;
         }
         let radiance = self.world.distant.radiance(sample);
-        let known = self.known_dome_light(receiver, sample, radiance, &value);
+        let known = self.known_dome_light(receiver, sample, radiance, value);
         if transmitted.is_blocked() || radiance == Rgb::ZERO {
             return -known;
         }
@@ -294,11 +308,11 @@ fn weight(path: &Path, emitter: &Emitter, distance: f64, shadow_pdf: impl Fn() -
 }
 
 /// Where light is received.
-struct Receiver<'a, 'w> {
+pub(super) struct Receiver<'a, 'w> {
     arrival: &'a Arrival,
-    smooth: &'a Smooth<'w>,
+    pub smooth: &'a Smooth<'w>,
     /// Chance that a path goes on by the smooth lobes.
-    share: f64,
+    pub share: f64,
     /// May no diffuse bounce follow?
     is_last: bool,
     guide: Option<(&'a GuideAt<'w>, Rates)>,
@@ -309,7 +323,7 @@ struct Receiver<'a, 'w> {
 }
 
 impl Receiver<'_, '_> {
-    fn smooth_value(&self, sample: &LightSample) -> SmoothValue {
+    pub fn smooth_value(&self, sample: &LightSample) -> SmoothValue {
         if sample.is_direct {
             self.smooth.toward_source(sample.direction, sample.solid_angle)
         } else {
@@ -318,7 +332,7 @@ impl Receiver<'_, '_> {
     }
 
     /// Density [1/sr] with which paths go on in this direction, if they go on by the smooth lobes.
-    fn pdf(&self, direction: Vec3) -> f64 {
+    pub fn pdf(&self, direction: Vec3) -> f64 {
         let own = self.smooth.pdf(direction);
         match &self.guide {
             Some((guide, rates)) => rates.own * own + guide.pdf(rates, direction),
@@ -326,7 +340,7 @@ impl Receiver<'_, '_> {
         }
     }
 
-    fn cosine(&self, direction: Vec3) -> f64 {
+    pub fn cosine(&self, direction: Vec3) -> f64 {
         self.smooth.cosine(direction, self.arrival.normal)
     }
 

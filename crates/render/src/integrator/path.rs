@@ -12,6 +12,8 @@ pub(super) struct Departure {
     pub pdf: f64,
     /// What light sources in this direction are multiplied with.
     pub source_factor: f64,
+    /// Are paths from here tied to patches of sun as well?
+    pub is_tied: bool,
 }
 
 /// A path from the camera or a sensor.
@@ -29,6 +31,8 @@ pub(super) struct Path {
     pub departure: Option<Departure>,
     /// Mirrored or refracted since the departure, or since the camera?
     pub is_bent: bool,
+    /// Met nothing since the departure?
+    pub is_clear: bool,
     /// Passed the peak of a table since the departure?
     pub is_past_peak: bool,
     /// Refracted, or mirrored by a curved surface, since the camera?
@@ -60,6 +64,7 @@ impl Path {
             bounces: 0,
             departure: None,
             is_bent: false,
+            is_clear: false,
             is_past_peak: false,
             is_distorted: false,
             first_direction: ray.direction,
@@ -113,6 +118,7 @@ impl Path {
     pub fn go_straight(&mut self, point: Vec3, share: Rgb) {
         self.ray = Ray::past(point, self.ray.direction);
         self.throughput *= share;
+        self.is_clear = false;
     }
 
     pub fn mirror(&mut self, arrival: &Arrival, share: Rgb, is_flat: bool) {
@@ -121,6 +127,7 @@ impl Path {
         self.reach = f64::INFINITY;
         self.throughput *= share;
         self.is_bent = true;
+        self.is_clear = false;
         self.is_distorted |= !is_flat;
     }
 
@@ -129,6 +136,7 @@ impl Path {
         self.distance = 0.0;
         self.throughput *= share;
         self.is_bent = true;
+        self.is_clear = false;
         self.is_distorted = true;
         self.extinction = match material {
             Some(Material::Dielectric(solid)) => solid.extinction_behind(arrival),
@@ -143,6 +151,7 @@ impl Path {
         self.throughput *= weight;
         self.departure = Some(departure);
         self.is_bent = false;
+        self.is_clear = true;
         self.is_past_peak = false;
         self.is_known = false;
     }

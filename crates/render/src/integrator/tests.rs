@@ -84,7 +84,7 @@ fn worlds(text: &str, bsdf: Arc<Bsdf>, peak: PeakRule, folder: &Path) -> [World;
     let options = WorldOptions { peak, loaded: vec![(folder.join("cloth.xml"), bsdf)] };
     let compile = || World::compile(&scene, &options).expect("compiles");
     let mut plain = compile();
-    (plain.guide, plain.backlights) = (None, Default::default());
+    (plain.guide, plain.backlights, plain.sun_patches) = (None, Default::default(), None);
     [compile(), plain]
 }
 
@@ -121,6 +121,57 @@ fn a_wall_in_the_plane_of_a_shade_is_not_lit_by_it() {
             assert!((a.0 - b.0).abs() < 4.0 * error, "sensor {sensor}: {a:?}, plain {b:?}\n{text}");
         }
     }
+}
+
+/// A deep room behind a pane with a wing of another, two suns, a glossy floor, a box in the sun, and one that shades the pane.
+const SUNNY: &str = "void plastic wall 0 0 5 .6 .5 .4 0 0\nvoid plastic floor 0 0 5 .3 .3 .3 .1 .15\n\
+    void glass pane 0 0 3 .9 .92 .9\nvoid light shine 0 0 3 1e6 9e5 8e5\n\
+    shine source sun 0 0 4 .3 -1 .6 .533\nshine source second 0 0 4 -.5 -1 .4 2\n\
+    void glow sky 0 0 4 20 25 30 0\nsky source dome 0 0 4 0 0 1 180\n\
+    floor polygon f 0 0 12 0 0 0 4 0 0 4 12 0 0 12 0\nwall polygon c 0 0 12 0 0 3 0 12 3 4 12 3 4 0 3\n\
+    wall polygon l 0 0 12 0 0 0 0 12 0 0 12 3 0 0 3\nwall polygon r 0 0 12 4 0 0 4 0 3 4 12 3 4 12 0\n\
+    wall polygon b 0 0 12 0 12 0 4 12 0 4 12 3 0 12 3\n\
+    !genbox wall table 1 .8 .7 | xform -t 1 1 .01\n!genbox wall fin .1 1 3 | xform -t 2 -1.2 0\n\
+    pane polygon front 0 0 12 4 0 0 0 0 0 0 0 3 4 0 3\npane polygon wing 0 0 12 3 .5 0 4 .5 0 4 .5 2 3 .5 2\n";
+
+#[test]
+fn ties_to_patches_of_sun_change_no_mean_and_bring_less_noise() {
+    let folder = folder("sunny");
+    let bsdf = Fabric::default().tabulate(Basis::KlemsQuarter).expect("tabulates");
+    let [world, mut untied] = worlds(SUNNY, Arc::new(bsdf), PeakRule::Split, &folder);
+    assert!(world.sun_patches.is_some());
+    untied.guide = world.guide.clone();
+    let sensors = [
+        (Vec3::new(2.0, 10.0, 0.8), Vec3::Z),
+        (Vec3::new(0.01, 6.0, 1.5), Vec3::X),
+        (Vec3::new(2.0, 2.0, 2.99), -Vec3::Z),
+        (Vec3::new(1.5, 1.4, 0.72), Vec3::Z),
+    ];
+    let ours = estimate(&world, &sensors, 512, 1 << 20);
+    let theirs = estimate(&untied, &sensors, 4096, 1 << 30);
+    let mut gain = 0.0;
+    for (sensor, (a, b)) in ours.into_iter().zip(theirs).enumerate() {
+        assert!((a.0 - b.0).abs() < 3.5 * a.1.hypot(b.1), "sensor {sensor}: {a:?}, without ties {b:?}");
+        gain += (b.1 / a.1).powi(2) * 8.0 / 4.0;
+    }
+    assert!(gain > 1.4, "variance {gain:.1} times less");
+}
+
+#[test]
+fn ties_are_left_out_where_little_sun_comes_in() {
+    let folder = folder("shaded");
+    let world = |text: &str| {
+        let bsdf = Fabric { openness: 0.03, ..Fabric::default() }.tabulate(Basis::KlemsQuarter);
+        let [world, _] = worlds(text, Arc::new(bsdf.expect("tabulates")), PeakRule::Split, &folder);
+        world.sun_patches.is_some()
+    };
+    std::fs::write(folder.join("cloth.xml"), "").expect("writes");
+    assert!(world(SUNNY));
+    assert!(!world(&SUNNY.replace(" -1 .", " 1 .")), "suns behind the room");
+    let cloth = "void aBSDF cloth 5 cloth.xml 0 0 1 . 0 0\n";
+    assert!(!world(&(cloth.to_owned() + &SUNNY.replace("pane polygon", "cloth polygon"))), "fabric");
+    let slats = "!genbox wall slat 4 .08 .002 | xform -rx 30 -t 0 .02 .02 -a 60 -t 0 0 .05";
+    assert!(!world(&format!("{SUNNY}{slats}\n")), "slats");
 }
 
 #[test]

@@ -7,9 +7,10 @@ use sunpeak_core::{Rgb, Vec3, luminance};
 const HEIGHTS: usize = 128;
 /// Cells around.
 const AZIMUTHS: usize = 256;
-/// Cells of a row are searched in blocks of as many as fill a cache line, by way of the blocks' sums.
+/// Rows, and cells of a row, are searched in blocks of as many as fill a cache line, by way of the blocks' sums.
 const BLOCK: usize = 16;
 const BLOCKS: usize = AZIMUTHS / BLOCK;
+const ROW_BLOCKS: usize = HEIGHTS / BLOCK;
 /// The brightness of a cell is the mean of so many by so many points.
 const POINTS: usize = 2;
 /// Every cell gets at least this share of the mean brightness, so that no light is missed where a cell's points saw none.
@@ -21,6 +22,8 @@ const FLOOR: f64 = 1e-3;
 pub(crate) struct Dome {
     /// Running sums of the rows, up to 1.
     rows: Vec<f32>,
+    /// Running sums of blocks of rows, up to 1.
+    row_blocks: Vec<f32>,
     /// Running sums of the blocks within each row, up to 1.
     blocks: Vec<f32>,
     /// Running sums of the cells within each row, up to 1.
@@ -39,8 +42,9 @@ impl Dome {
         weights.iter_mut().for_each(|w| *w = w.max(FLOOR * mean));
         let row_sums: Vec<f64> = weights.chunks_exact(AZIMUTHS).map(|row| row.iter().sum()).collect();
         let cells: Vec<f32> = weights.chunks_exact(AZIMUTHS).flat_map(running_sums).collect();
-        let blocks = cells.iter().skip(BLOCK - 1).step_by(BLOCK).copied().collect();
-        Some(Self { rows: running_sums(&row_sums), blocks, cells })
+        let rows = running_sums(&row_sums);
+        let ends = |sums: &[f32]| sums.iter().skip(BLOCK - 1).step_by(BLOCK).copied().collect();
+        Some(Self { row_blocks: ends(&rows), blocks: ends(&cells), rows, cells })
     }
 
     /// Density [1/sr].
@@ -53,9 +57,9 @@ impl Dome {
 
     /// A direction and its density [1/sr].
     pub fn sample(&self, [u, v]: [f64; 2]) -> (Vec3, f64) {
-        let row = step(&self.rows, u);
-        let block = row * BLOCKS + step(&self.blocks[row * BLOCKS..(row + 1) * BLOCKS], v);
-        let cell = block * BLOCK + step(&self.cells[block * BLOCK..(block + 1) * BLOCK], v) - row * AZIMUTHS;
+        let row = step_within::<BLOCK>(&self.rows, step_within::<ROW_BLOCKS>(&self.row_blocks, 0, u), u);
+        let block = step_within::<BLOCKS>(&self.blocks, row, v);
+        let cell = step_within::<BLOCK>(&self.cells, block, v) - row * AZIMUTHS;
         let height = within(&self.rows, row, u);
         let turn = within(self.row(row), cell, v);
         let z = 2.0 * (row as f64 + height) / HEIGHTS as f64 - 1.0;
@@ -108,6 +112,14 @@ pub(super) fn pick(sums: &[f32], u: f64) -> (usize, f64) {
 
 fn step(sums: &[f32], u: f64) -> usize {
     sums.partition_point(|&sum| f64::from(sum) <= u).min(sums.len() - 1)
+}
+
+/// The step of block `index` of so many sums, by counting: there are no branches to be guessed wrong.
+fn step_within<const BLOCK: usize>(sums: &[f32], index: usize, u: f64) -> usize {
+    let (blocks, _) = sums.as_chunks::<BLOCK>();
+    let u = u as f32;
+    let passed: u32 = blocks[index].iter().map(|&sum| u32::from(sum <= u)).sum();
+    index * BLOCK + (passed as usize).min(BLOCK - 1)
 }
 
 fn before(sums: &[f32], step: usize) -> f64 {

@@ -11,6 +11,7 @@ use crate::material::{
     Mist, Mixture, Modifiers, Prism, Step, Table, Varying, WardMaterial, WgmdMaterial, stands_for_geometry,
 };
 use crate::shapes::{Analytic, Cone, MeshSurface, Polygon, Ring, Sphere, Triangle};
+use crate::sunlit::SunPatches;
 use std::{collections::HashMap, path::Path, sync::Arc};
 use sunpeak_bsdf::{Bsdf, PeakRule};
 use sunpeak_core::{Error, Frame, Location, Result, Vec3};
@@ -104,13 +105,17 @@ impl<'s> Compiler<'s> {
             rule: self.options.peak,
             rays: Default::default(),
             guide: None,
+            sun_patches: None,
             backlights: Default::default(),
             meshes: self.meshes,
             has_volumes,
         };
         world.backlights = Backlights::find(&world, &self.shades);
         let shades = self.shades.iter().map(|&(_, triangle)| triangle);
-        world.guide = Guide::new(shades.chain(windows(&world, &self.panes)).collect(), suns);
+        let portals: Vec<Triangle> = shades.chain(windows(&world, &self.panes)).collect();
+        let patches = SunPatches::new(&world, &portals);
+        world.guide = Guide::new(portals, suns);
+        world.sun_patches = patches.filter(|patches| patches.count(&world));
         Ok(world)
     }
 
