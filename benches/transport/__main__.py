@@ -5,7 +5,8 @@ usage, inside benches/: python -m transport [--only NAME ...] [--reference-error
 Each room is seen by a 180-degree fisheye of 240 x 240 pixels. Errors are root mean squares over blocks of 3 degrees,
 relative to the picture's mean luminance, against a reference that our path tracer makes with other seeds; it says how
 far it has converged itself. Blocks within 3 degrees of a sun that the eye sees are left out: neither program's pixels
-hold it. `rpict` runs in one process with several qualities, with and without its ambient cache, two at a time; ours
+hold it. Ev is compared without them, DGP with the reference in their place. What ours errs is the root mean square of
+several seeds, what `rpict` errs that of its one picture. `rpict` runs in one process with several qualities, with and without its ambient cache, two at a time; ours
 runs with doubling numbers of paths, loading and compiling counted. Where the room has an `aBSDF`, Radiance extracts
 its peak by its own rule, and its reference is made under that rule.
 """
@@ -46,7 +47,10 @@ QUALITIES: dict[str, tuple[str, ...]] = {
     "no cache, middle": (*WHOLE, "-ab", "6", "-ad", "32", "-ss", "32"),
     "no cache, high": (*WHOLE, "-ab", "7", "-ad", "128", "-ss", "64"),
 }
-OUR_SAMPLES = (1, 2, 4, 8, 16, 32)
+OUR_SEEDS = {1: 6, 2: 6, 4: 4, 8: 3, 16: 2, 32: 1}
+"""Of each number of paths."""
+
+QUANTITIES = ("rmse", "ev", "dgp")
 
 
 class Measured:
@@ -107,9 +111,17 @@ class Measured:
         ev, true_ev = (float((blocks(p) * self.weights)[self.mask].sum()) for p in (luminance, reference))
         return {
             "ev": ev / true_ev - 1,
+            "dgp": self.dgp(luminance, reference) - self.dgp(reference, reference),
             "rmse": float(np.sqrt(np.mean(difference**2)) / truth.mean()),
             "bias": float(difference.mean() / truth.mean()),
         }
+
+    def dgp(self, luminance: Floats, reference: Floats) -> float:
+        """DGP of a picture, the reference in blocks that are left out."""
+        edge = SIZE // BLOCKS
+        held = np.where(np.kron(self.mask, np.ones((edge, edge), bool)), luminance, reference)
+        pixels = np.repeat(held[..., None] / 179.0, 3, axis=2)
+        return sp.glare(sp.Picture.of(pixels, self.view)).dgp
 
 
 def blocks(luminance: Floats) -> Floats:
@@ -191,23 +203,38 @@ def cpu_of(pid: int) -> float | None:
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
-def run_ours(measured: Measured, samples: int, seed: int) -> dict[str, Any]:
-    """Load, compile and render: CPU time and errors."""
-    start = time.process_time()
-    world = measured.world(measured.room.peak)
-    luminance = sp.render(world, measured.view, (SIZE, SIZE), samples=samples, seed=seed).luminance()
-    cpu_s = time.process_time() - start
-    return {"samples": samples, "cpu_s": cpu_s, **measured.errors(luminance, measured.reference)}
+def run_ours(measured: Measured, samples: int) -> dict[str, Any]:
+    """Load, compile and render with several seeds: CPU time, and root mean squares of the errors."""
+    runs = []
+    for seed in range(OUR_SEEDS[samples]):
+        start = time.process_time()
+        world = measured.world(measured.room.peak)
+        luminance = sp.render(world, measured.view, (SIZE, SIZE), samples=samples, seed=7 + seed).luminance()
+        runs.append({"cpu_s": time.process_time() - start, **measured.errors(luminance, measured.reference)})
+    rms = {key: float(np.sqrt(np.mean([run[key] ** 2 for run in runs]))) for key in QUANTITIES}
+    means = {key: float(np.mean([run[key] for run in runs])) for key in ("cpu_s", "bias")}
+    return {"samples": samples, "seeds": len(runs), **means, **rms}
 
 
-def time_to(error: float, ours: list[dict[str, Any]]) -> float:
+def time_to(error: float, ours: list[dict[str, Any]], key: str) -> float:
     """CPU time at which ours has an error, between its runs; by the law of large numbers beyond them."""
-    errors, times = np.array([r["rmse"] for r in ours]), np.array([r["cpu_s"] for r in ours])
+    errors = np.minimum.accumulate([run[key] for run in ours])
+    times = np.array([run["cpu_s"] for run in ours])
     if error >= errors[0]:
         return float(times[0])
     if error <= errors[-1]:
         return float(times[-1] * (errors[-1] / error) ** 2)
     return float(np.exp(np.interp(-np.log(error), -np.log(errors), np.log(times))))
+
+
+def compare(theirs: list[dict[str, Any]], ours: list[dict[str, Any]]) -> None:
+    """Add to each run of `rpict` our CPU time to its errors, and how much cheaper that is than its own cheapest way there."""
+    for run in theirs:
+        for key in QUANTITIES:
+            error = abs(run[key])
+            run[f"ours_{key}_cpu_s"] = time_to(error, ours, key)
+            cheapest = min(other["cpu_s"] for other in theirs if abs(other[key]) <= error)
+            run[f"{key}_ratio"] = cheapest / run[f"ours_{key}_cpu_s"]
 
 
 def main() -> None:
@@ -244,7 +271,8 @@ def main() -> None:
 
 def described(run: dict[str, Any]) -> str:
     """Time and errors on a line."""
-    return f"{run['cpu_s']:>8.2f} s {run['rmse']:>8.2%} bias {run['bias']:>+7.2%} Ev {run['ev']:>+7.2%}"
+    errors = f"{run['rmse']:>8.2%} bias {run['bias']:>+7.2%} Ev {run['ev']:>+7.2%} DGP {run['dgp']:>+7.4f}"
+    return f"{run['cpu_s']:>8.2f} s {errors}"
 
 
 def measure(room: BenchRoom, folder: Path, options: argparse.Namespace) -> dict[str, Any]:
@@ -252,7 +280,7 @@ def measure(room: BenchRoom, folder: Path, options: argparse.Namespace) -> dict[
     measured = Measured(room, folder, options.reference_error, options.limit_s)
     errors = f"{measured.reference_error:.2%}, under Radiance's rule {measured.rad_reference_error:.2%}"
     print(f"\n{room.name}: reference {errors}")
-    ours = [run_ours(measured, samples, 7) for samples in OUR_SAMPLES]
+    ours = [run_ours(measured, samples) for samples in OUR_SEEDS]
     for run in ours:
         print(f"  ours, {run['samples']:>3} paths       {described(run)}")
     if options.ours_only:
@@ -260,16 +288,14 @@ def measure(room: BenchRoom, folder: Path, options: argparse.Namespace) -> dict[
     octree_of(room, folder)
     with ThreadPoolExecutor(2) as two:
         theirs = list(two.map(lambda quality: measured.theirs(quality, options.limit_s), options.qualities))
+    finished = [run for run in theirs if run["finished"]]
+    compare(finished, ours)
     for run in theirs:
         if not run["finished"]:
             print(f"  rpict, {run['quality']:<16} {run['cpu_s']:>8.1f} s, not finished")
             continue
-        run["ours_cpu_s"] = time_to(run["rmse"], ours)
-        better = [other["cpu_s"] for other in theirs if other["finished"] and other["rmse"] <= run["rmse"]]
-        run["ratio"] = min(better) / run["ours_cpu_s"]
-        print(
-            f"  rpict, {run['quality']:<16} {described(run)}   ours {run['ours_cpu_s']:.2f} s, ratio {run['ratio']:.1f}"
-        )
+        ratios = ", ".join(f"{key} {run[f'{key}_ratio']:.1f}" for key in QUANTITIES)
+        print(f"  rpict, {run['quality']:<16} {described(run)}   ours {run['ours_rmse_cpu_s']:.2f} s, ratios {ratios}")
     sys.stdout.flush()
     return {
         "room": room.name,

@@ -16,8 +16,8 @@ use crate::world::Seen;
 use std::f64::consts::PI;
 use sunpeak_core::{Frame, Sampler, Vec3, luminance, warp::cosine_hemisphere};
 
-/// Surfaces that a ray of the sun passes on its way in.
-const MAX_LAYERS: usize = 16;
+/// Surfaces on its way in after which a ray of the sun is given up.
+const MAX_LAYERS: usize = 1000;
 
 /// Rays that tell what the sun brings, and as many that look for the rest of the light.
 const PROBES: u64 = 128;
