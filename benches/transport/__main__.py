@@ -6,9 +6,9 @@ Each room is seen by a 180-degree fisheye of 240 x 240 pixels. Errors are root m
 relative to the picture's mean luminance, against a reference that our path tracer makes with other seeds; it says how
 far it has converged itself. Blocks within 3 degrees of a sun that the eye sees are left out: neither program's pixels
 hold it. Ev is compared without them, DGP with the reference in their place. What ours errs is the root mean square of
-several seeds, what `rpict` errs that of its one picture. `rpict` runs in one process with several qualities, with and without its ambient cache, two at a time; ours
-runs with doubling numbers of paths, loading and compiling counted. Where the room has an `aBSDF`, Radiance extracts
-its peak by its own rule, and its reference is made under that rule.
+several seeds, what `rpict` errs that of its one picture. `rpict` runs in one process with several qualities, with and
+without its ambient cache, two at a time; ours runs with doubling numbers of paths, loading and compiling counted. Where
+the room has an `aBSDF`, Radiance extracts its peak by its own rule, and its reference is made under that rule.
 """
 
 import argparse
@@ -228,7 +228,7 @@ def time_to(error: float, ours: list[dict[str, Any]], key: str) -> float:
 
 
 def compare(theirs: list[dict[str, Any]], ours: list[dict[str, Any]]) -> None:
-    """Add to each run of `rpict` our CPU time to its errors, and how much cheaper that is than its own cheapest way there."""
+    """Add to each run of `rpict` our CPU time to its errors, and the ratio of its own cheapest way there to that."""
     for run in theirs:
         for key in QUANTITIES:
             error = abs(run[key])
