@@ -141,6 +141,36 @@ def test_the_straight_part_of_a_system_is_exact_in_the_table_and_in_its_split(fa
     assert sp.Bsdf.load(tmp_path / "split").through(-ANGLES) == pytest.approx(bsdf.through(-ANGLES), rel=1e-6)
 
 
+def test_the_solar_band_of_a_low_e_pane_and_a_diffuser_is_the_suns_integral() -> None:
+    """All rounds between the two in closed form, summed over the sun's table by fine steps."""
+    table = np.loadtxt(Path(__file__).parents[1] / "crates/bsdf/data/solar_e891.txt")
+    um = np.linspace(table[0, 0], table[-1, 0], 500_001)
+    power = np.interp(um, *table.T)
+    light = (um >= 0.38) & (um <= 0.78)
+    share = power[light].sum() / power.sum()
+    # Transmittance, front and back reflectance; the diffuser's transmittance and reflectance.
+    panes = {True: (0.8, 0.1, 0.1), False: (0.1, 0.6, 0.7)}
+    diffusers = {True: (0.2, 0.5), False: (0.4, 0.3)}
+    passed = {}
+    for visible, values in panes.items():
+        gray = sp.System([sp.Pane((0.55,), *((value,) for value in values), curve="bronze")])
+        # Half of the innermost patch, 0 to 5 degrees, lies within 3.53 degrees.
+        tau, returned = gray.straight(sp.direction(3.53)).transmittance, gray.diffuse(inside=True).reflectance
+        through, back = diffusers[visible]
+        passed[visible] = tau * through / (1 - back * returned)
+    expected = share * passed[True] + (1 - share) * passed[False]
+
+    columns = [tuple(panes[k][i] for k in (False, False, True, True, False, False)) for i in range(3)]
+    low_e = sp.Pane((0.3, 0.379999, 0.38, 0.78, 0.780001, 2.5), *columns, curve="bronze")
+    solar = [share * light + (1 - share) * rest for light, rest in zip(*diffusers.values(), strict=True)]
+    bands = [
+        sp.Formula("lambert", transmittance=through, reflectance=back).tabulate("klems")
+        for through, back in (diffusers[True], solar)
+    ]
+    found = sp.System([low_e, sp.Shade(*bands)]).bsdf("klems", "solar")
+    assert found.hemispherical([0, 0, -1]) == pytest.approx(expected, rel=1e-3)
+
+
 def test_bases_agree(fabric: Path) -> None:
     """One system through matrices of patches, and through the cells of a tree."""
     system = sp.System([CLEAR, sp.Shade.load(fabric), CLEAR])

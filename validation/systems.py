@@ -1,11 +1,19 @@
 """Glazing systems against LBNL's pyWinCalc, patch by patch: `validation/systems.md` says what came out.
 
-    python validation/systems.py PRODUCTS SHADE [-o validation/systems.json]
+    python validation/systems.py PRODUCTS SHADE [-o validation/systems.json] [--only low-e]
 
 PRODUCTS is a folder with pane files of LBNL's Optics: CLEAR_3.DAT, CLEAR_6.DAT, CSR42_3.afg, LOW-E_5.LOF as they
 come with the examples of pyWinCalc. SHADE is a BSDF file in Klems's full basis with a visible and a solar band. Neither
-is part of this project. pyWinCalc takes a minute of CPU and more for each system with a shade, by the wavelengths of
-the panes' files: of the low-e pane, which has 496, both read every fifth.
+is part of this project. `--only` runs the systems with one pane or shade and leaves the other rows of the output.
+
+pyWinCalc takes a minute of CPU and more for each system with a shade, by the wavelengths of the panes' files: of the
+low-e pane, which has 496, both read every fifth. So that both see the same shade in the solar band:
+
+- pyWinCalc 3.3.1 (WinCalc 2.4.1) finds a shade's invisible values as (solar - 0.49 visible) / 0.51, whatever share of
+  the sun it then counts as visible; we take the share of the sun's table, 0.4949. It gets a file with such solar values
+  that it finds the same invisible ones.
+- It joins the results at the wavelengths of the panes' files by straight lines, also over the edges of the visible,
+  where a shade's values jump. The files of the panes, for both, and its sun get wavelengths 0.1 nm beside the edges.
 """
 
 import argparse
@@ -20,6 +28,7 @@ from typing import Any
 import numpy as np
 
 import sunpeak as sp
+from sunpeak import _core
 from sunpeak.systems import Band
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests/parity"))
@@ -56,12 +65,16 @@ def pane(products: Path, name: str) -> sp.Pane:
 
 
 def thinned(products: Path, folder: Path) -> Path:
-    """The panes' files with as many of their wavelengths as `EVERY` says, in another folder."""
-    for pane, name in FILES.items():
-        lines = (products / name).read_bytes().splitlines(keepends=True)
-        readings = [k for k, line in enumerate(lines) if line[:1].isdigit()]
-        left_out = set(readings[:-1]) - set(readings[:: EVERY.get(pane, 1)])
-        (folder / name).write_bytes(b"".join(line for k, line in enumerate(lines) if k not in left_out))
+    """Panes' files in another folder: the wavelengths that `EVERY` leaves, and those at the edges of the visible."""
+    for name, file in FILES.items():
+        lines = (products / file).read_text(errors="replace").splitlines()
+        first = next(k for k, line in enumerate(lines) if line[:1].isdigit())
+        um, *columns = np.loadtxt(lines[first:], usecols=range(4)).T
+        kept = [*um[: -1 : EVERY.get(name, 1)], um[-1]]
+        kept = np.union1d(kept, [0.38, 0.78, *wincalc.BESIDE_VISIBLE_UM])
+        rows = zip(kept, *(np.interp(kept, um, column) for column in columns), strict=True)
+        text = [*lines[:first], *("{:.4f} {:.6f} {:.6f} {:.6f}".format(*row) for row in rows)]
+        (folder / file).write_text("\n".join(text) + "\n")
     return folder
 
 
@@ -97,12 +110,17 @@ def panes_alone(products: Path, names: list[str], band: Band) -> dict[str, Any]:
 
 
 def with_shade(products: Path, files: dict[str, Path], names: list[str], band: Band) -> dict[str, Any]:
-    """All rings of Klems's basis from both sides."""
-    ours, theirs = [], []
+    """All rings of Klems's basis from both sides; `products` is a folder that can be written."""
+    ours, theirs, options = [], [], {}
+    if band == "solar":
+        options["optical_standard"] = wincalc.sharp_sun(products)
     for name in names:
         if name in files:
             ours.append(sp.Shade.load(files[name]))
-            theirs.append(wincalc.shade(files[name]))
+            path = files[name]
+            if band == "solar":
+                path = wincalc.as_they_share(path, products / f"their {name}.xml", _core.visible_share())
+            theirs.append(wincalc.shade(path))
         else:
             ours.append(pane(products, name))
             theirs.append(wincalc.pywincalc.parse_optics_file(str(products / FILES[name])))
@@ -110,7 +128,7 @@ def with_shade(products: Path, files: dict[str, Path], names: list[str], band: B
     system = sp.System(ours)
     bsdf = system.bsdf("klems", band, panes="middle")
     middle = time.process_time()
-    found = wincalc.results(theirs, band, matrices=True)
+    found = wincalc.results(theirs, band, matrices=True, **options)
     end = time.process_time()
     row: dict[str, Any] = {
         "system": names,
@@ -140,30 +158,42 @@ def with_shade(products: Path, files: dict[str, Path], names: list[str], band: B
     return row
 
 
+def key(row: dict[str, Any]) -> str:
+    """What tells a row from others."""
+    return f"{' + '.join(row['system'])}, {row['band']}"
+
+
 def main() -> None:
     """Compare, print a line each, write all of it."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("products", type=Path)
     parser.add_argument("shade", type=Path)
     parser.add_argument("-o", "--output", type=Path)
+    parser.add_argument("--only", metavar="PANE", help="systems with this pane or shade; other rows stay in the output")
     given = parser.parse_args()
-    rows: list[dict[str, Any]] = []
+    rows: dict[str, dict[str, Any]] = {}
+    if given.only and given.output:
+        rows = {key(row): row for row in json.loads(given.output.read_text())}
+
+    def wanted(names: list[str]) -> bool:
+        return given.only is None or given.only in names
 
     def add(row: dict[str, Any]) -> None:
-        rows.append(row)
+        rows[key(row)] = row
         print(json.dumps(row), flush=True)
 
-    for names in PANES:
+    for names in filter(wanted, PANES):
         for band in ("visible", "solar"):
             add(panes_alone(given.products, names, band))
     with tempfile.TemporaryDirectory() as folder:
+        products = thinned(given.products, Path(folder))
         fabric = Path(folder) / "fabric.xml"
         sp.RollerBlind(0.05, 0.15, 0.5, 0.4).write(fabric, solar=sp.RollerBlind(0.05, 0.25, 0.45, 0.35))
         for names, band in SHADED:
-            products = thinned(given.products, Path(folder))
-            add(with_shade(products, {"shade": given.shade, "fabric": fabric}, names, band))
+            if wanted(names):
+                add(with_shade(products, {"shade": given.shade, "fabric": fabric}, names, band))
     if given.output:
-        given.output.write_text(json.dumps(rows, indent=1) + "\n")
+        given.output.write_text(json.dumps(list(rows.values()), indent=1) + "\n")
 
 
 if __name__ == "__main__":
