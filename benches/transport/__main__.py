@@ -28,6 +28,7 @@ import numpy.typing as npt
 import pyradiance
 
 import sunpeak as sp
+from sunpeak.images import LUMINOUS_EFFICACY
 
 from .rooms import BenchRoom, rooms
 
@@ -120,7 +121,7 @@ class Measured:
         """DGP of a picture, the reference in blocks that are left out."""
         edge = SIZE // BLOCKS
         held = np.where(np.kron(self.mask, np.ones((edge, edge), bool)), luminance, reference)
-        pixels = np.repeat(held[..., None] / 179.0, 3, axis=2)
+        pixels = np.repeat(held[..., None] / LUMINOUS_EFFICACY, 3, axis=2)
         return sp.glare(sp.Picture.of(pixels, self.view)).dgp
 
 

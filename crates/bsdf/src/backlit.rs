@@ -218,14 +218,11 @@ fn polar(oriented: &Oriented, residual: bool, rings: usize, light: impl Fn(DVec2
     let mut lights = [const { Vec::new() }; 3];
     for ring in 0..RINGS {
         let angle = bin_angle(ring);
-        for k in 0..2 * AZIMUTHS {
-            if k >= AZIMUTHS {
-                lights.iter_mut().for_each(|channel| channel.push(channel[channel.len() - AZIMUTHS]));
-                continue;
-            }
+        for k in 0..AZIMUTHS {
             let light = light(point(ring as f64 + 0.5, k as f64 + 0.5)) * angle;
             lights.iter_mut().zip(light.to_array()).for_each(|(channel, value)| channel.push(value));
         }
+        lights.iter_mut().for_each(|channel| channel.extend_from_within(channel.len() - AZIMUTHS..));
     }
     let bins = if oriented.reversed { Vec::new() } else { bins_of_parts() };
     let step = AZIMUTHS / KEPT_AZIMUTHS;

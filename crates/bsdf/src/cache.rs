@@ -26,7 +26,8 @@ use std::{
     time::SystemTime,
 };
 
-/// Files from this size on are kept [bytes]: a matrix of 145 patches a side has twice of it, and is split in a third of a second.
+/// Files from this size on are kept [bytes]: a matrix of 145 patches a side has two to three times of it, and
+/// is split in a third of a second.
 const LEAST_FILE: u64 = 1 << 17;
 
 /// What the folder may hold [bytes].

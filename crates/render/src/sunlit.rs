@@ -11,13 +11,10 @@ use crate::integrator::{Integrator, Limits};
 use crate::light::LightSample;
 use crate::material::{Inside, Material};
 use crate::shapes::{COINCIDENT, Ray, Triangle};
-use crate::transmit::Target;
+use crate::transmit::{MAX_STEPS, Target, Transmitted};
 use crate::world::Seen;
 use std::f64::consts::PI;
 use sunpeak_core::{Frame, Sampler, Vec3, luminance, warp::cosine_hemisphere};
-
-/// Surfaces on its way in after which a ray of the sun is given up.
-const MAX_LAYERS: usize = 1000;
 
 /// Rays that tell what the sun brings, and as many that look for the rest of the light.
 const PROBES: u64 = 128;
@@ -49,15 +46,19 @@ impl Drawn {
     }
 }
 
-/// A ray of the sun up to where it ends.
+/// A ray of the sun through a portal, up to where it ends.
 pub(crate) struct SunRay {
-    pub sun: usize,
     pub sample: LightSample,
     /// Index of the portal, and the point where the ray passes it.
     portal: usize,
     start: Vec3,
     pub end: Vec3,
+    /// What it ends on.
     pub object: u32,
+    /// What is left of the light there.
+    pub transmitted: Transmitted,
+    /// Rays of the sun that end there, across their direction [1/m²].
+    pub density: f64,
 }
 
 /// Streams of random numbers.
@@ -98,28 +99,27 @@ impl SunPatches {
         (1..=MAX_SUNS).contains(&suns.len()).then(|| Self { portals: portals.to_vec(), suns })
     }
 
-    /// Follow a ray of a sun from a portal inwards, all rays alike; `None` if it ends nowhere, or is bent.
+    /// Follow a ray of a sun from a portal inwards; `None` if it does not come there, ends nowhere, or is bent.
     pub fn follow(&self, world: &World, drawn: &Drawn) -> Option<SunRay> {
         let chosen = (drawn.sun * self.suns.len() as f64) as usize;
         let (sun, shares) = &self.suns[chosen.min(self.suns.len() - 1)];
         let sample = world.distant.sample_sun(*sun, drawn.disc)?;
-        let [mut left, u, v] = drawn.ray;
-        let portal = shares.iter().position(|share| {
-            left -= share;
-            left < 0.0
-        })?;
+        let [choice, u, v] = drawn.ray;
+        let portal = pick(shares, choice)?;
         let start = Triangle::sample([u, v], self.portals[portal].0);
         let target = Target::sun(*sun, &sample);
-        let mut end = start;
-        for _ in 0..MAX_LAYERS {
-            let ray = Ray::past(end, -sample.direction);
-            let hit = world.accel.closest(&ray, f64::INFINITY)?;
-            end = ray.at(hit.t);
-            if !world.lets_pass(hit.object, end, &target, sample.direction)? {
-                return Some(SunRay { sun: *sun, sample, portal, start, end, object: hit.object });
-            }
-        }
-        None
+        let (end, object) = end_of(world, start, &target, -sample.direction)?;
+        let transmitted = world.transmitted(&Ray::new(end, sample.direction), &target, Inside::default());
+        let density = self.density(*sun, end, sample.direction);
+        (!transmitted.is_blocked()).then_some(SunRay {
+            sample,
+            portal,
+            start,
+            end,
+            object,
+            transmitted,
+            density,
+        })
     }
 
     /// Density of the rays through a point, across their direction, which goes to this sun [1/m²]: all portals that they have come
@@ -157,11 +157,6 @@ impl SunPatches {
         if ray.start.distance(ray.end) < NEAR * self.portals[ray.portal].area_vector().length().sqrt() {
             return 0.0;
         }
-        let to_sun = Ray::new(ray.end, ray.sample.direction);
-        let transmitted = world.transmitted(&to_sun, &Target::sun(ray.sun, &ray.sample), Inside::default());
-        if transmitted.is_blocked() {
-            return 0.0;
-        }
         let inwards = Ray::new(ray.start, -ray.sample.direction);
         let hit = Hit { t: ray.start.distance(ray.end), object: ray.object };
         let mut choose = || sampler.next_1d();
@@ -169,24 +164,17 @@ impl SunPatches {
             world.meet(&hit, &inwards, false, &mut Inside::default(), [0.0; 2], &mut choose);
         let Seen::Surface(material) = seen else { return 0.0 };
         let albedo = material.scatter(&arrival, false).smooth.albedo();
-        let radiance = luminance(world.distant.radiance(&ray.sample) * transmitted.share);
-        let density = self.density(ray.sun, ray.end, ray.sample.direction);
-        if density > 0.0 { albedo * radiance / (ray.sample.pdf * density) } else { 0.0 }
+        let radiance = luminance(world.distant.radiance(&ray.sample) * ray.transmitted.share);
+        if ray.density > 0.0 { albedo * radiance / (ray.sample.pdf * ray.density) } else { 0.0 }
     }
 
-    /// Flux [W] that comes in otherwise, by a ray that looks out of a portal.
+    /// Flux [W] that comes in otherwise, by a ray that looks out of a portal: towards the side of the first sun.
     fn rest(&self, integrator: &Integrator, sampler: &mut Sampler) -> f64 {
         let world = integrator.world;
         let areas: Vec<f64> = self.portals.iter().map(|portal| portal.area_vector().length()).collect();
         let whole: f64 = areas.iter().sum();
         let [choice, u, v] = sampler.next_3d();
-        let mut left = choice * whole;
-        let Some(portal) = areas.iter().position(|area| {
-            left -= area;
-            left < 0.0
-        }) else {
-            return 0.0;
-        };
+        let Some(portal) = pick(&areas, choice * whole) else { return 0.0 };
         let triangle = &self.portals[portal];
         let normal = triangle.area_vector().normalize();
         let to_sun = world.distant.get(self.suns[0].0).direction;
@@ -203,6 +191,28 @@ impl SunPatches {
     fn shares(&self, sun: usize) -> Option<&Vec<f64>> {
         self.suns.iter().find(|(index, _)| *index == sun).map(|(_, shares)| shares)
     }
+}
+
+/// Where a ray of the sun that sets out from a point ends, and on what: it passes what lets anything pass to the target.
+fn end_of(world: &World, start: Vec3, target: &Target, inwards: Vec3) -> Option<(Vec3, u32)> {
+    let mut end = start;
+    for _ in 0..MAX_STEPS {
+        let ray = Ray::past(end, inwards);
+        let hit = world.accel.closest(&ray, f64::INFINITY)?;
+        end = ray.at(hit.t);
+        if !world.lets_pass(hit.object, end, target, -inwards)? {
+            return Some((end, hit.object));
+        }
+    }
+    None
+}
+
+/// The index of the weight that a number between zero and their sum falls into.
+fn pick(weights: &[f64], mut at: f64) -> Option<usize> {
+    weights.iter().position(|weight| {
+        at -= weight;
+        at < 0.0
+    })
 }
 
 /// Area across a direction [m²].

@@ -14,7 +14,7 @@ use sunpeak_core::{Rgb, Vec3};
 const FAST_LAYERS: usize = 8;
 
 /// Steps after which a followed ray is given up.
-const MAX_STEPS: usize = 1000;
+pub(crate) const MAX_STEPS: usize = 1000;
 
 /// Relative distance before the emitter at which a shadow ray ends.
 const SHORT_OF_TARGET: f64 = 1e-9;
