@@ -4,6 +4,7 @@
 //! `_deg` are in degrees). Radiances have three channels in Radiance's primaries [W sr⁻¹ m⁻²].
 
 mod color;
+mod cone;
 mod control;
 mod error;
 mod frame;
@@ -12,6 +13,7 @@ mod transform;
 pub mod warp;
 
 pub use color::{LUMINOUS_EFFICACY, Rgb, gray, luminance, luminance_cd_m2, rgb_to_xyz, xyz_to_rgb};
+pub use cone::Cone;
 pub use control::Control;
 pub use error::{Error, Location, Result};
 pub use frame::Frame;

@@ -1,5 +1,7 @@
 //! Owen-scrambled Sobol samples (Burley 2020, "Practical Hash-based Owen Scrambling").
 
+use sobol_burley::parts::{hash, hash_int4, owen_scramble_int4_rev, owen_scramble_rev, sobol_int4_rev};
+
 /// A sample sequence for one pixel or sensor: each sample index is one path, each call one or two dimensions.
 ///
 /// The same seed, stream and index give the same numbers, on any number of threads.
@@ -7,7 +9,11 @@
 pub struct Sampler {
     index: u32,
     seed: u32,
+    /// The index in the order in which this seed and round visit the sequence, bits reversed.
+    shuffled: u32,
+    /// Sets of dimensions that were used, of this round.
     set: u32,
+    round: u32,
     values: [f32; 4],
     left: usize,
 }
@@ -17,7 +23,8 @@ impl Sampler {
     pub fn new(seed: u64, stream: u64, index: u64) -> Self {
         let chunk = index / Self::CHUNK;
         let mixed = mix(seed ^ mix(stream.wrapping_add(mix(chunk).wrapping_mul(u64::from(chunk > 0)))));
-        Self { index: (index % Self::CHUNK) as u32, seed: mixed as u32, set: 0, values: [0.0; 4], left: 0 }
+        let (index, seed) = ((index % Self::CHUNK) as u32, mixed as u32);
+        Self { index, seed, shuffled: shuffled(index, seed), set: 0, round: 0, values: [0.0; 4], left: 0 }
     }
 
     /// Length of the sequence in `sobol_burley`.
@@ -50,12 +57,32 @@ impl Sampler {
 
     /// Past the last dimension set the sets repeat under another seed: deep bounces stay independent.
     fn refill(&mut self) {
-        let sets = sobol_burley::NUM_DIMENSION_SETS_4D;
-        let seed = self.seed.wrapping_add((self.set / sets).wrapping_mul(0x9e37_79b9));
-        self.values = sobol_burley::sample_4d(self.index, self.set % sets, seed);
+        if self.set == sobol_burley::NUM_DIMENSION_SETS_4D {
+            (self.set, self.round) = (0, self.round + 1);
+            self.shuffled = shuffled(self.index, self.seed_of_round());
+        }
+        self.values = values(self.shuffled, self.set, self.seed_of_round());
         self.set += 1;
         self.left = 4;
     }
+
+    fn seed_of_round(&self) -> u32 {
+        self.seed.wrapping_add(self.round.wrapping_mul(0x9e37_79b9))
+    }
+}
+
+/// Where a seed puts an index of the sequence, bits reversed. With [`values`] it is [`sobol_burley::sample_4d`], cut in two: this half is
+/// the same for all sets of dimensions.
+fn shuffled(index: u32, seed: u32) -> u32 {
+    owen_scramble_rev(index.reverse_bits(), hash(seed ^ 0x79c6_8e4a))
+}
+
+fn values(shuffled: u32, set: u32, seed: u32) -> [f32; 4] {
+    let mixed = seed.wrapping_mul(0x9c8f_2d3b) ^ set;
+    let scramble =
+        [0x912f_69ba, 0x174f_18ab, 0x691e_72ca, 0xb40c_c1b8].map(|dimension: u32| dimension ^ mixed);
+    let scrambled = owen_scramble_int4_rev(sobol_int4_rev(shuffled, set), hash_int4(scramble.into()));
+    scrambled.reverse_bits().to_f32_norm()
 }
 
 /// Finaliser of SplitMix64 (Steele, Lea, Flood 2014).
@@ -81,6 +108,14 @@ mod tests {
             })
             .sum();
         assert!((sum / n as f64 - 0.25).abs() < 1e-3);
+    }
+
+    #[test]
+    fn the_halves_make_the_whole() {
+        for (index, set, seed) in [(0, 0, 0), (5, 3, 7), (65_535, 63, 0xffff_ffff), (1234, 17, 0x1234_5678)] {
+            let whole = sobol_burley::sample_4d(index, set, seed);
+            assert_eq!(values(shuffled(index, seed), set, seed), whole);
+        }
     }
 
     #[test]

@@ -8,11 +8,11 @@
 //! passes and flat mirrors are followed, both ways at every pane, so reflections between parallel panes count as well.
 
 use crate::World;
-use crate::light::{at_infinity, is_in_cone};
+use crate::light::at_infinity;
 use crate::material::{Arrival, Inside, Material};
 use crate::shapes::Ray;
 use crate::world::{Facing, Seen};
-use sunpeak_core::{Frame, Rgb, Sampler, Vec3, luminance, warp};
+use sunpeak_core::{Cone, Rgb, Sampler, Vec3, luminance};
 use sunpeak_scene::{Camera, ExactSource, View, ViewKind, disc_coverage};
 
 /// Points of the disc at which chains are followed.
@@ -41,9 +41,8 @@ const SAME_DIRECTION: f64 = 1e-9;
 struct Disc {
     /// Index of the source.
     source: usize,
-    /// Unit vector from the eye.
-    direction: Vec3,
-    angle_deg: f64,
+    /// Directions from the eye.
+    cone: Cone,
 }
 
 /// The suns of one picture.
@@ -63,16 +62,11 @@ impl ExactSuns {
         for (i, disc) in candidates(world).into_iter().enumerate() {
             let chains = Chains { world, camera: &camera, disc: &disc, seed: seed.wrapping_add(i as u64) };
             let Some((radiance, visible_fraction)) = chains.seen() else { continue };
-            let solid_angle_sr = sunpeak_core::cone_solid_angle(disc.angle_deg);
-            if disc_coverage(view, width, height, disc.direction, solid_angle_sr).is_empty() {
+            let (direction, solid_angle_sr) = (disc.cone.axis(), disc.cone.solid_angle());
+            if disc_coverage(view, width, height, direction, solid_angle_sr).is_empty() {
                 continue;
             }
-            found.sources.push(ExactSource {
-                direction: disc.direction,
-                solid_angle_sr,
-                radiance,
-                visible_fraction,
-            });
+            found.sources.push(ExactSource { direction, solid_angle_sr, radiance, visible_fraction });
             found.discs.push(disc);
         }
         found
@@ -80,18 +74,12 @@ impl ExactSuns {
 
     /// Is source `index`, seen in this direction from the eye by a straight or mirrored chain, one of these?
     pub fn contain(&self, index: usize, direction: Vec3) -> bool {
-        self.discs.iter().any(|disc| disc.source == index && disc.contains(direction))
+        self.discs.iter().any(|disc| disc.source == index && disc.cone.contains(direction))
     }
 
     /// For the picture's header and pixels.
     pub fn sources(&self) -> Vec<ExactSource> {
         self.sources.clone()
-    }
-}
-
-impl Disc {
-    fn contains(&self, direction: Vec3) -> bool {
-        is_in_cone(direction, self.direction, self.angle_deg)
     }
 }
 
@@ -102,17 +90,18 @@ fn candidates(world: &World) -> Vec<Disc> {
     for &source in world.distant.suns() {
         let sun = world.distant.get(source);
         let mut add = |direction: Vec3| {
-            let is_known = |d: &Disc| d.source == source && d.direction.distance(direction) < SAME_DIRECTION;
+            let is_known =
+                |d: &Disc| d.source == source && d.cone.axis().distance(direction) < SAME_DIRECTION;
             if !discs.iter().any(is_known) {
-                discs.push(Disc { source, direction, angle_deg: sun.angle_deg });
+                discs.push(Disc { source, cone: Cone::new(direction, sun.cone.angle_deg()) });
             }
         };
-        add(sun.direction);
+        add(sun.direction());
         let mirror = crate::material::reflect;
-        orientations.iter().for_each(|&n| add(mirror(sun.direction, n)));
+        orientations.iter().for_each(|&n| add(mirror(sun.direction(), n)));
         if orientations.len() <= MAX_PAIRED_ORIENTATIONS {
             let pairs = orientations.iter().flat_map(|&a| orientations.iter().map(move |&b| (a, b)));
-            pairs.for_each(|(a, b)| add(mirror(mirror(sun.direction, a), b)));
+            pairs.for_each(|(a, b)| add(mirror(mirror(sun.direction(), a), b)));
         }
     }
     discs
@@ -166,12 +155,11 @@ impl Chains<'_> {
 
     /// Sum over `samples` points of the disc, and the number of points that are seen.
     fn sum(&self, samples: u64) -> (Rgb, u64) {
-        let frame = Frame::from_normal(self.disc.direction);
         let mut sum = Rgb::ZERO;
         let mut count = 0;
         for i in 0..samples {
             let u = Sampler::new(self.seed, u64::MAX, i).next_2d();
-            let direction = frame.to_world(warp::uniform_cone(u, self.disc.angle_deg));
+            let direction = self.disc.cone.sample(u);
             let radiance = self.radiance(direction);
             if radiance != Rgb::ZERO {
                 sum += radiance;

@@ -280,10 +280,11 @@ impl<'w> Integrator<'w> {
 /// section 9.2: balance heuristic).
 fn mixed(met: &Met, guide: &GuideAt, rates: &Rates, direction: Vec3) -> Option<SmoothSample> {
     let smooth = &met.scattering.smooth;
-    let pdf = rates.own * smooth.pdf(direction) + guide.pdf(rates, direction);
+    let (value, own) = smooth.evaluate_with_pdf(direction);
+    let pdf = rates.own * own + guide.pdf(rates, direction);
     let cosine = direction.dot(met.arrival.normal).abs();
     let source_factor = smooth.source_factor(direction);
-    let weight = smooth.evaluate(direction).scaled(cosine / pdf);
+    let weight = value.scaled(cosine / pdf);
     (pdf > 0.0).then_some(SmoothSample { direction, weight, pdf, source_factor })
 }
 

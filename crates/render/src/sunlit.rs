@@ -88,7 +88,7 @@ impl SunPatches {
         if portals.len() > MAX_TRIANGLES || world.has_volumes || world.materials.iter().any(turns) {
             return None;
         }
-        let direction_of = |&sun: &usize| (sun, world.distant.get(sun).direction);
+        let direction_of = |&sun: &usize| (sun, world.distant.get(sun).direction());
         let suns: Vec<_> = world.distant.suns().iter().map(direction_of).collect();
         let of_sun = |&(sun, direction): &(usize, Vec3)| {
             let areas: Vec<f64> = portals.iter().map(|portal| area_across(portal, direction)).collect();
@@ -177,7 +177,7 @@ impl SunPatches {
         let Some(portal) = pick(&areas, choice * whole) else { return 0.0 };
         let triangle = &self.portals[portal];
         let normal = triangle.area_vector().normalize();
-        let to_sun = world.distant.get(self.suns[0].0).direction;
+        let to_sun = world.distant.get(self.suns[0].0).direction();
         let outwards = if normal.dot(to_sun) > 0.0 { normal } else { -normal };
         let direction = Frame::from_normal(outwards).to_world(cosine_hemisphere(sampler.next_2d()));
         let is_sun = world.distant.seen(direction).is_some_and(|seen| world.distant.suns().contains(&seen));

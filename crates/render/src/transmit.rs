@@ -194,6 +194,9 @@ impl World {
     }
 
     fn pass(&self, hit: &Hit, ray: &Ray, target: &Target) -> Pass<'_> {
+        if self.object(hit).is_wall {
+            return Pass::Straight(Rgb::ZERO, false);
+        }
         let arrival = self.arrival(hit, ray);
         self.pass_material(self.material(self.object(hit).material), &arrival, target)
     }

@@ -53,6 +53,8 @@ pub struct World {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Object {
     pub material: MaterialId,
+    /// Does it let nothing pass straight, wherever it is met ([`Material::is_wall`])?
+    pub is_wall: bool,
     pub facing: Facing,
     /// Index among the lamps.
     pub lamp: Option<u32>,

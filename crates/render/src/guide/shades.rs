@@ -2,7 +2,8 @@
 
 use super::MAX_TRIANGLES;
 use crate::shapes::{Ray, Triangle};
-use sunpeak_core::Vec3;
+use std::f64::consts::PI;
+use sunpeak_core::{Vec3, warp};
 
 /// Below this solid angle [sr] there is nothing to see: the point lies in the triangle's plane but for rounding.
 const NOTHING_SR: f64 = 1e-9;
@@ -16,8 +17,8 @@ const SMALL_SR: f64 = 1e-4;
 pub(super) struct ShadesAt<'g> {
     triangles: &'g [Triangle],
     point: Vec3,
-    /// Of each triangle [sr].
-    solid_angles: [f64; MAX_TRIANGLES],
+    /// Of each triangle [sr]; in single precision, since surfaces that are met are handed on by value.
+    solid_angles: [f32; MAX_TRIANGLES],
     whole: f64,
 }
 
@@ -26,20 +27,26 @@ impl<'g> ShadesAt<'g> {
     pub fn new(triangles: &'g [Triangle], point: Vec3) -> Self {
         let mut solid_angles = [0.0; MAX_TRIANGLES];
         for (solid_angle, triangle) in solid_angles.iter_mut().zip(triangles) {
-            *solid_angle = solid_angle_of(triangle, point);
+            *solid_angle = solid_angle_of(triangle, point) as f32;
         }
-        let whole = solid_angles[..triangles.len()].iter().sum();
+        let whole = solid_angles[..triangles.len()].iter().map(|&s| f64::from(s)).sum();
         Self { triangles, point, solid_angles, whole }
+    }
+
+    fn shades(&self) -> impl Iterator<Item = (&Triangle, f64)> {
+        self.triangles
+            .iter()
+            .zip(&self.solid_angles)
+            .map(|(triangle, &solid_angle)| (triangle, f64::from(solid_angle)))
     }
 
     /// A direction; `None` where no shade can be seen.
     pub fn sample(&self, [choice, u, v]: [f64; 3]) -> Option<Vec3> {
         let mut left = choice * self.whole;
-        let (triangle, &solid_angle) =
-            self.triangles.iter().zip(&self.solid_angles).find(|(_, solid_angle)| {
-                left -= **solid_angle;
-                left < 0.0
-            })?;
+        let (triangle, solid_angle) = self.shades().find(|(_, solid_angle)| {
+            left -= solid_angle;
+            left < 0.0
+        })?;
         if solid_angle < SMALL_SR {
             return (Triangle::sample([u, v], triangle.0) - self.point).try_normalize();
         }
@@ -52,7 +59,7 @@ impl<'g> ShadesAt<'g> {
             return 0.0;
         }
         let ray = Ray::new(self.point, direction);
-        let share = |(triangle, &solid_angle): (&Triangle, &f64)| {
+        let share = |(triangle, solid_angle): (&Triangle, f64)| {
             let t = triangle.crossing(&ray);
             if solid_angle <= 0.0 || !(t > 0.0 && t.is_finite()) {
                 return 0.0;
@@ -63,7 +70,7 @@ impl<'g> ShadesAt<'g> {
             }
             1.0
         };
-        self.triangles.iter().zip(&self.solid_angles).map(share).sum::<f64>() / self.whole
+        self.shades().map(share).sum::<f64>() / self.whole
     }
 }
 
@@ -83,7 +90,7 @@ fn spherical([a, b, c]: [Vec3; 3], solid_angle: f64, [u, v]: [f64; 2]) -> Option
     let cos_alpha = ab.dot(ac).clamp(-1.0, 1.0);
     let sin_alpha = ab.cross(ac).length();
     let cos_ab = a.dot(b);
-    let (sin_rest, cos_rest) = (u * solid_angle).sin_cos();
+    let [cos_rest, sin_rest] = warp::circle(u * solid_angle / (2.0 * PI));
     // Sine and cosine of the part's area less alpha.
     let s = sin_rest * cos_alpha - cos_rest * sin_alpha;
     let t = cos_rest * cos_alpha + sin_rest * sin_alpha;

@@ -4,7 +4,7 @@ use crate::material::Table;
 use std::f64::consts::PI;
 use std::sync::Arc;
 use sunpeak_bsdf::{Bsdf, Mode, PeakRule};
-use sunpeak_core::{Frame, Sampler, Vec3};
+use sunpeak_core::{Frame, Sampler, Vec3, warp};
 
 /// Share of directions against a scattered sun that are drawn by the table. Seen from the room its cells lie elsewhere than seen
 /// from the sun, so that at the edge of a peak a table alone would find too little: the rest are drawn around the sun.
@@ -95,7 +95,7 @@ impl Around {
     fn sample(&self, [u, v]: [f64; 2]) -> Vec3 {
         let h = self.level * ((self.octaves * u).exp() - 1.0);
         let sin = (h * (2.0 - h)).max(0.0).sqrt();
-        let (y, x) = (2.0 * PI * v).sin_cos();
+        let [x, y] = warp::circle(v);
         self.frame.to_world(Vec3::new(sin * x, sin * y, 1.0 - h))
     }
 

@@ -213,7 +213,7 @@ impl Integrator<'_> {
         };
         let Facing::Flat(normal) = world.objects[object as usize].facing else { return Rgb::ZERO };
         // Where the sun's light goes behind the prism: from there the sun is seen.
-        let center = world.distant.get(sun).direction;
+        let center = world.distant.get(sun).direction();
         let light = RayState::new(place, normal, -center, 0.0);
         let Some((_, leaving)) = prism.way(way, &light, Vec3::ZERO) else { return Rgb::ZERO };
         let direction = DQuat::from_rotation_arc(center, -leaving) * sample.direction;

@@ -6,22 +6,11 @@
 use super::{Light, LightSample, dome::Dome};
 use crate::SMALL_SOURCE_DEG;
 use crate::material::{Emitter, EmitterKind};
-use sunpeak_core::{Frame, Rgb, Vec3, cone_solid_angle, warp};
+use sunpeak_core::{Cone, Rgb, Vec3};
 use sunpeak_scene::RayState;
-
-/// Cones are closed: a ray along the horizon, between a sky and a ground of 180 degrees each, sees one of them whatever rounding
-/// does to it.
-const EDGE: f64 = 1e-9;
 
 /// Where expressions see a source [m] (Radiance, `FHUGE`).
 const FAR_AWAY: f64 = 1e10;
-
-/// Does the unit vector `direction` point into the cone of full angle `angle_deg` around `axis`?
-pub(crate) fn is_in_cone(direction: Vec3, axis: Vec3, angle_deg: f64) -> bool {
-    // 1 - cos from the chord, which keeps its digits for a disc as small as the sun's.
-    let height = 0.5 * (direction - axis).length_squared();
-    height <= 2.0 * (angle_deg.to_radians() / 4.0).sin().powi(2) * (1.0 + EDGE)
-}
 
 /// A ray that has come to a source: it faces the ray, far away.
 pub(crate) fn at_infinity(direction: Vec3) -> RayState {
@@ -31,10 +20,8 @@ pub(crate) fn at_infinity(direction: Vec3) -> RayState {
 /// One `source`.
 #[derive(Clone, Debug)]
 pub(crate) struct Distant {
-    /// Unit vector towards its centre.
-    pub direction: Vec3,
-    /// Full angle [deg].
-    pub angle_deg: f64,
+    /// Where it is seen.
+    pub cone: Cone,
     /// What it emits.
     pub emitter: Emitter,
     /// Which surface of the scene it is.
@@ -42,22 +29,19 @@ pub(crate) struct Distant {
 }
 
 impl Distant {
-    pub fn solid_angle(&self) -> f64 {
-        cone_solid_angle(self.angle_deg)
+    /// Around the unit vector `direction`, of this full angle [deg].
+    pub fn new(direction: Vec3, angle_deg: f64, emitter: Emitter, surface: u32) -> Self {
+        Self { cone: Cone::new(direction, angle_deg), emitter, surface }
     }
 
-    pub fn contains(&self, direction: Vec3) -> bool {
-        is_in_cone(direction, self.direction, self.angle_deg)
+    /// Unit vector towards its centre.
+    pub fn direction(&self) -> Vec3 {
+        self.cone.axis()
     }
 
     /// Is it a sun: sampled one by one, and not left to chance?
     pub fn is_small(&self) -> bool {
-        self.angle_deg < SMALL_SOURCE_DEG
-    }
-
-    /// A direction into it, uniform over its solid angle.
-    pub fn sample_direction(&self, u: [f64; 2]) -> Vec3 {
-        Frame::from_normal(self.direction).to_world(warp::uniform_cone(u, self.angle_deg))
+        self.cone.angle_deg() < SMALL_SOURCE_DEG
     }
 
     /// Rank where sources overlap; the smallest is seen.
@@ -94,7 +78,7 @@ impl DistantSources {
 
     /// The source that is seen in a direction.
     pub fn seen(&self, direction: Vec3) -> Option<usize> {
-        self.sources.iter().position(|s| s.contains(direction))
+        self.sources.iter().position(|s| s.cone.contains(direction))
     }
 
     pub fn get(&self, index: usize) -> &Distant {
@@ -125,7 +109,7 @@ impl DistantSources {
     pub fn pdf(&self, index: usize, direction: Vec3) -> f64 {
         let source = &self.sources[index];
         match (&self.dome, source.is_small()) {
-            (_, true) => 1.0 / source.solid_angle(),
+            (_, true) => 1.0 / source.cone.solid_angle(),
             (Some(dome), false) => dome.pdf(direction),
             (None, false) => 0.0,
         }
@@ -139,9 +123,9 @@ impl DistantSources {
     /// A direction to sun `index`; `None` where another source stands before it.
     pub fn sample_sun(&self, index: usize, u: [f64; 2]) -> Option<LightSample> {
         let sun = &self.sources[index];
-        let direction = sun.sample_direction(u);
+        let direction = sun.cone.sample(u);
         (self.seen(direction) == Some(index))
-            .then(|| self.light_sample(index, direction, 1.0 / sun.solid_angle()))
+            .then(|| self.light_sample(index, direction, 1.0 / sun.cone.solid_angle()))
     }
 
     /// A direction into the sky, in proportion to its brightness.
@@ -168,7 +152,7 @@ impl DistantSources {
             distance: f64::INFINITY,
             light: Light::OfSource(index),
             pdf,
-            solid_angle: source.solid_angle(),
+            solid_angle: source.cone.solid_angle(),
             is_direct: source.emitter.is_direct(f64::INFINITY),
             is_dome: !source.is_small(),
             object: None,
@@ -185,12 +169,8 @@ mod tests {
     use sunpeak_sky::{CieSky, SkyDistribution};
 
     fn source(direction: Vec3, angle_deg: f64, value: f64, kind: EmitterKind) -> Distant {
-        Distant {
-            direction,
-            angle_deg,
-            emitter: Emitter { radiance: gray(value), patterns: Vec::new(), kind },
-            surface: 0,
-        }
+        let emitter = Emitter { radiance: gray(value), patterns: Vec::new(), kind };
+        Distant::new(direction, angle_deg, emitter, 0)
     }
 
     fn sky_and_sun() -> DistantSources {
@@ -206,7 +186,7 @@ mod tests {
     #[test]
     fn the_sun_stands_before_the_sky() {
         let all = sky_and_sun();
-        let sun = all.get(all.suns()[0]).direction;
+        let sun = all.get(all.suns()[0]).direction();
         assert_eq!(all.seen(sun), Some(all.suns()[0]));
         assert!(all.dome_radiance(sun) == Rgb::ZERO);
         assert!(all.seen(Vec3::Z).is_some() && all.seen(Vec3::NEG_Z).is_some());

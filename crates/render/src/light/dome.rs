@@ -1,7 +1,7 @@
 //! Sampling a sky in proportion to its brightness: a table of the sphere in cells of equal solid angle.
 
 use std::f64::consts::PI;
-use sunpeak_core::{Rgb, Vec3, luminance};
+use sunpeak_core::{Rgb, Vec3, luminance, warp};
 
 /// Cells between nadir and zenith, equal steps of the height z. With the azimuths: cells of 4e-4 sr, about a degree wide.
 const HEIGHTS: usize = 128;
@@ -63,8 +63,8 @@ impl Dome {
         let height = within(&self.rows, row, u);
         let turn = within(self.row(row), cell, v);
         let z = 2.0 * (row as f64 + height) / HEIGHTS as f64 - 1.0;
-        let phi = 2.0 * PI * (cell as f64 + turn) / AZIMUTHS as f64;
-        (direction(z, phi), self.density(row, cell))
+        let turns = (cell as f64 + turn) / AZIMUTHS as f64;
+        (direction(z, turns), self.density(row, cell))
     }
 
     fn row(&self, row: usize) -> &[f32] {
@@ -77,9 +77,9 @@ impl Dome {
     }
 }
 
-fn direction(z: f64, phi: f64) -> Vec3 {
+fn direction(z: f64, turns: f64) -> Vec3 {
     let r = (1.0 - z * z).max(0.0).sqrt();
-    let (sin, cos) = phi.sin_cos();
+    let [cos, sin] = warp::circle(turns);
     Vec3::new(r * cos, r * sin, z)
 }
 
@@ -88,7 +88,7 @@ fn cell_mean(radiance: &impl Fn(Vec3) -> Rgb, row: usize, cell: usize) -> f64 {
         (0..POINTS * POINTS).map(|k| [k / POINTS, k % POINTS].map(|o| (o as f64 + 0.5) / POINTS as f64));
     let at = |[h, a]: [f64; 2]| {
         let z = 2.0 * (row as f64 + h) / HEIGHTS as f64 - 1.0;
-        luminance(radiance(direction(z, 2.0 * PI * (cell as f64 + a) / AZIMUTHS as f64)))
+        luminance(radiance(direction(z, (cell as f64 + a) / AZIMUTHS as f64)))
     };
     offsets.map(at).sum::<f64>() / (POINTS * POINTS) as f64
 }

@@ -153,7 +153,7 @@ impl Lamp {
         let LampShape::Sphere(Sphere { center, radius, .. }) = self.shape else { return None };
         let height = u[0] * solid_angle / (2.0 * PI);
         let side = (height * (2.0 - height)).sqrt();
-        let (sin, cos) = (2.0 * PI * u[1]).sin_cos();
+        let [cos, sin] = warp::circle(u[1]);
         let axis = (center - from).normalize_or(Vec3::Z);
         let direction = Frame::from_normal(axis).to_world(Vec3::new(side * cos, side * sin, 1.0 - height));
         let along = (center - from).dot(direction);

@@ -5,7 +5,7 @@ mod dome;
 mod lamp;
 mod lamps;
 
-pub(crate) use distant::{Distant, DistantSources, at_infinity, is_in_cone};
+pub(crate) use distant::{Distant, DistantSources, at_infinity};
 pub(crate) use lamp::{Lamp, LampShape};
 pub(crate) use lamps::Lamps;
 

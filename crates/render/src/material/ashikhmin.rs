@@ -133,7 +133,7 @@ impl AshikhminLobes {
     /// Their equations 9 and 10: the azimuth is that of an ellipse.
     fn sample_specular(&self, [u, v]: [f64; 2]) -> Vec3 {
         let [nu, nv] = self.powers;
-        let (sin, cos) = (2.0 * PI * v).sin_cos();
+        let [cos, sin] = warp::circle(v);
         let [x, y] = [cos * (nv + 1.0).sqrt(), sin * (nu + 1.0).sqrt()];
         let scale = x.hypot(y);
         let [x, y] = [x / scale, y / scale];

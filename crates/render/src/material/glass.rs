@@ -22,12 +22,30 @@ pub(crate) struct Glass {
     pub index: f64,
 }
 
-/// One polarisation at one angle.
+/// Both faces at one angle.
 struct Faces {
     /// Fresnel reflectances, perpendicular and parallel.
     reflectance: [f64; 2],
     /// Fraction not absorbed along the refracted path.
     crossing: Rgb,
+}
+
+impl Faces {
+    /// Share that goes straight on, unpolarised.
+    fn transmittance(&self) -> Rgb {
+        let d = self.crossing;
+        0.5 * self.reflectance.map(|r| (1.0 - r) * (1.0 - r) * d / (1.0 - r * r * d * d)).iter().sum::<Rgb>()
+    }
+
+    /// Share that is mirrored, unpolarised.
+    fn mirrored(&self) -> Rgb {
+        let d2 = self.crossing * self.crossing;
+        0.5 * self
+            .reflectance
+            .map(|r| r * (1.0 + (1.0 - 2.0 * r) * d2) / (1.0 - r * r * d2))
+            .iter()
+            .sum::<Rgb>()
+    }
 }
 
 impl Glass {
@@ -51,26 +69,18 @@ impl Glass {
 
     /// Share that goes straight on, unpolarised.
     pub fn transmittance(&self, cosine: f64) -> Rgb {
-        let Faces { reflectance, crossing: d } = self.faces(cosine);
-        0.5 * reflectance.iter().map(|&r| (1.0 - r) * (1.0 - r) * d / (1.0 - r * r * d * d)).sum::<Rgb>()
-    }
-
-    /// Share that is mirrored, unpolarised.
-    pub fn reflectance(&self, cosine: f64) -> Rgb {
-        let Faces { reflectance, crossing } = self.faces(cosine);
-        let d2 = crossing * crossing;
-        0.5 * reflectance.iter().map(|&r| r * (1.0 + (1.0 - 2.0 * r) * d2) / (1.0 - r * r * d2)).sum::<Rgb>()
+        self.faces(cosine).transmittance()
     }
 
     /// `view`: the ray comes from the camera by straight passes and mirrors alone.
     pub fn scatter(&self, arrival: &Arrival, view: bool) -> Scattering<'static> {
-        let cosine = arrival.cosine();
+        let faces = self.faces(arrival.cosine());
         // Patterns multiply what comes through, and nothing else, as in Radiance.
-        let through = self.transmittance(cosine) * arrival.tint;
+        let through = faces.transmittance() * arrival.tint;
         let bent = if view { self.bent(arrival) } else { None };
         Scattering {
             straight: if bent.is_some() { Rgb::ZERO } else { through },
-            mirrored: self.reflectance(cosine),
+            mirrored: faces.mirrored(),
             refracted: [bent.map(|direction| (direction, through)), None],
             smooth: Smooth::None,
         }
@@ -108,7 +118,7 @@ mod tests {
         let glass = Glass { transmissivity: gray(1.0), index: 1.52 };
         for i in 0..=20 {
             let cosine = f64::from(i) / 20.0;
-            let sum = glass.transmittance(cosine) + glass.reflectance(cosine);
+            let sum = glass.faces(cosine).transmittance() + glass.faces(cosine).mirrored();
             assert!((sum - Rgb::ONE).length() < 1e-9, "{cosine} {sum}");
         }
     }
@@ -124,6 +134,6 @@ mod tests {
     fn black_glass_reflects_its_first_face_only() {
         let glass = Glass { transmissivity: Rgb::ZERO, index: 1.5 };
         assert_eq!(glass.transmittance(0.7), Rgb::ZERO);
-        assert!((glass.reflectance(1.0).x - 0.04).abs() < 1e-12);
+        assert!((glass.faces(1.0).mirrored().x - 0.04).abs() < 1e-12);
     }
 }

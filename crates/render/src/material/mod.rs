@@ -229,6 +229,15 @@ impl Material {
         }
     }
 
+    /// Is [`Self::straight`] nothing, by whatever ray it is met?
+    pub fn is_wall(&self) -> bool {
+        match self {
+            Self::Ward(m) => !m.is_trans(),
+            Self::Ashikhmin(_) => true,
+            _ => false,
+        }
+    }
+
     /// Does it scatter light to its other side?
     pub fn is_shade(&self) -> bool {
         match self {

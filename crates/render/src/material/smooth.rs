@@ -160,6 +160,14 @@ impl Smooth<'_> {
         }
     }
 
+    /// Value and density in one.
+    pub fn evaluate_with_pdf(&self, direction: Vec3) -> (SmoothValue, f64) {
+        match self {
+            Self::Ward(lobes) => lobes.evaluate_with_pdf(direction),
+            _ => (self.evaluate(direction), self.pdf(direction)),
+        }
+    }
+
     /// Draw a direction; `None` as for [`Self::sample`].
     pub fn draw(&self, sampler: &mut Sampler) -> Option<SmoothSample> {
         // A sensor has one lobe.

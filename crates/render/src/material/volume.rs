@@ -8,7 +8,7 @@
 
 use super::{Alternate, MaterialId};
 use std::f64::consts::PI;
-use sunpeak_core::{Frame, Rgb, Vec3, luminance};
+use sunpeak_core::{Frame, Rgb, Vec3, luminance, warp};
 
 /// Volumes within each other; more are not noticed.
 const MAX_NESTED: usize = 8;
@@ -232,7 +232,7 @@ fn sample_henyey_greenstein(g: f64, direction: Vec3, [u, v]: [f64; 2]) -> Vec3 {
         ((1.0 + g * g - s * s) / (2.0 * g)).clamp(-1.0, 1.0)
     };
     let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
-    let (y, x) = (2.0 * PI * v).sin_cos();
+    let [x, y] = warp::circle(v);
     Frame::from_normal(direction).to_world(Vec3::new(sine * x, sine * y, cosine))
 }
 

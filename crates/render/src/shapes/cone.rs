@@ -1,7 +1,7 @@
 //! Cones and cylinders, cups and tubes: open at both ends.
 
 use super::{Bounds, Crossings, Ray, quadratic_roots};
-use sunpeak_core::Vec3;
+use sunpeak_core::{Vec3, warp};
 
 /// A frustum around an axis.
 #[derive(Clone, Copy, Debug)]
@@ -79,7 +79,7 @@ impl Cone {
         let [a, b] = quadratic_roots(0.5 * self.slope, 0.5 * self.start_radius, -u * whole);
         let height = [a, b].into_iter().find(|z| (0.0..=self.length).contains(z)).unwrap_or(u * self.length);
         let (x, y) = self.axis.any_orthonormal_pair();
-        let (sin, cos) = (2.0 * std::f64::consts::PI * v).sin_cos();
+        let [cos, sin] = warp::circle(v);
         self.start + self.axis * height + (x * cos + y * sin) * self.radius(height)
     }
 }

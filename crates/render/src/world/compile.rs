@@ -128,7 +128,7 @@ impl<'s> Compiler<'s> {
             };
             for id in self.seen_materials(material) {
                 let Material::Table(table) = &self.materials[id.0 as usize] else { continue };
-                let suns = distant.suns().iter().map(|&sun| distant.get(sun).direction);
+                let suns = distant.suns().iter().map(|&sun| distant.get(sun).direction());
                 for sun in suns.filter_map(|sun| ScatteredSun::new(table, normal, sun)) {
                     if !found.iter().any(|known| known.is_like(&sun)) {
                         found.push(sun);
@@ -167,7 +167,7 @@ impl<'s> Compiler<'s> {
     fn add_source(&mut self, material: MaterialId, direction: Vec3, angle_deg: f64) {
         if let Material::Emitter(emitter) = &self.materials[material.0 as usize] {
             let (emitter, surface) = (emitter.clone(), self.current);
-            self.sources.push(Distant { direction, angle_deg, emitter, surface });
+            self.sources.push(Distant::new(direction, angle_deg, emitter, surface));
         }
     }
 
@@ -283,7 +283,8 @@ impl<'s> Compiler<'s> {
         }
         self.surfaces.push(self.current);
         self.ranks.push(surface.modifier.map_or(0, |id| id.0 as u32));
-        self.objects.push(Object { material, facing, lamp: None });
+        let is_wall = self.materials[material.0 as usize].is_wall();
+        self.objects.push(Object { material, is_wall, facing, lamp: None });
         Ok(object)
     }
 

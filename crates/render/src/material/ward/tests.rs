@@ -1,5 +1,6 @@
 use super::*;
 use crate::testing::{chi_square_of_sampler, hemispherical_sum};
+use std::f64::consts::PI;
 use sunpeak_core::gray;
 use sunpeak_scene::{Anisotropy, Orientation, Ward};
 

@@ -4,7 +4,7 @@
 //! for the azimuth phi of h on the surface (Radiance's `diraniso`). With one roughness q = 1 / a², and |h|² = 2 (1 - cos) to d.
 
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, PI};
-use sunpeak_core::{Frame, Vec3};
+use sunpeak_core::{Frame, Vec3, warp};
 
 /// With two roughnesses this share of samples comes from an ellipse of the straight direction's own plane, the rest from a
 /// round lobe of the larger roughness, which the lobe nowhere exceeds by more than a factor: so all weights are bounded.
@@ -63,7 +63,7 @@ impl Transmission {
     /// A direction, on either side of the surface.
     pub fn sample(&self, [u, v]: [f64; 2]) -> Vec3 {
         let widest = self.alpha[0].max(self.alpha[1]);
-        let (sin, cos) = (2.0 * PI * v).sin_cos();
+        let [cos, sin] = warp::circle(v);
         if self.is_round() {
             return self.at(draw(u, 2.0 / (widest * widest)), [cos, sin]);
         }

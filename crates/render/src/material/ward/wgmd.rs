@@ -237,6 +237,7 @@ impl WgmdLobes {
     }
 
     fn add(&mut self, part: WardLobes) {
+        let part = part.weighed();
         if part.albedo() > 0.0 {
             self.parts.push(part);
         }

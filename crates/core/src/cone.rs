@@ -1,0 +1,82 @@
+//! Cones of directions.
+
+use crate::{Frame, Vec3, cone_solid_angle, warp};
+
+/// Cones are closed: a ray along the horizon, between a sky and a ground of 180 degrees each, sees one of them whatever rounding
+/// does to it.
+const EDGE: f64 = 1e-9;
+
+/// All directions within an angle of an axis.
+#[derive(Clone, Copy, Debug)]
+pub struct Cone {
+    frame: Frame,
+    angle_deg: f64,
+    /// 1 - cos of half the angle, which keeps its digits for a disc as small as the sun's.
+    height: f64,
+    solid_angle: f64,
+}
+
+impl Cone {
+    /// Around the unit vector `axis`, of this full angle [deg].
+    pub fn new(axis: Vec3, angle_deg: f64) -> Self {
+        let height = 2.0 * (angle_deg.to_radians() / 4.0).sin().powi(2);
+        Self { frame: Frame::from_normal(axis), angle_deg, height, solid_angle: cone_solid_angle(angle_deg) }
+    }
+
+    /// Unit vector in its middle.
+    pub fn axis(&self) -> Vec3 {
+        self.frame.z
+    }
+
+    /// Full angle [deg].
+    pub fn angle_deg(&self) -> f64 {
+        self.angle_deg
+    }
+
+    /// [sr]
+    pub fn solid_angle(&self) -> f64 {
+        self.solid_angle
+    }
+
+    /// Does the unit vector `direction` point into it?
+    pub fn contains(&self, direction: Vec3) -> bool {
+        // 1 - cos from the chord.
+        0.5 * (direction - self.axis()).length_squared() <= self.height * (1.0 + EDGE)
+    }
+
+    /// A direction evenly from it, by a point of the unit square; density 1 over the solid angle.
+    pub fn sample(&self, u: [f64; 2]) -> Vec3 {
+        let [dx, dy] = warp::square_to_disk(u);
+        let radius_squared = dx * dx + dy * dy;
+        // 1 - cos(theta) is uniform; sin(theta) from it without cancellation.
+        let height = self.height * radius_squared;
+        let scale =
+            if radius_squared > 0.0 { (height * (2.0 - height) / radius_squared).sqrt() } else { 0.0 };
+        self.frame.to_world(Vec3::new(dx * scale, dy * scale, 1.0 - height))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_stay_in_the_cone_and_fill_it() {
+        let cone = Cone::new(Vec3::new(0.6, 0.0, 0.8), 0.533);
+        let edge = (cone.angle_deg() / 2.0).to_radians();
+        let n = 200;
+        let mut mean = 0.0;
+        for i in 0..n {
+            for j in 0..n {
+                let d = cone.sample([(i as f64 + 0.5) / n as f64, (j as f64 + 0.5) / n as f64]);
+                let theta = d.cross(cone.axis()).length().asin();
+                assert!(theta <= edge * (1.0 + 1e-9) && (d.length() - 1.0).abs() < 1e-12);
+                assert!(cone.contains(d));
+                mean += (theta / edge).powi(2) / (n * n) as f64;
+            }
+        }
+        // theta² is uniform on a small disc: its mean is half the largest.
+        assert!((mean - 0.5).abs() < 1e-3, "{mean}");
+        assert!(!cone.contains(Vec3::Z));
+    }
+}
