@@ -38,6 +38,15 @@ impl Cone {
         self.solid_angle
     }
 
+    /// Does all of it point to the back of a surface with this unit normal?
+    pub fn is_behind(&self, normal: Vec3) -> bool {
+        // sin² of half the angle from 1 - cos; wider than a hemisphere it always shows before the surface.
+        let cosine = self.axis().dot(normal);
+        self.height < 1.0
+            && cosine < 0.0
+            && cosine * cosine > self.height * (2.0 - self.height) * (1.0 + EDGE)
+    }
+
     /// Does the unit vector `direction` point into it?
     pub fn contains(&self, direction: Vec3) -> bool {
         // 1 - cos from the chord.
@@ -78,5 +87,17 @@ mod tests {
         // theta² is uniform on a small disc: its mean is half the largest.
         assert!((mean - 0.5).abs() < 1e-3, "{mean}");
         assert!(!cone.contains(Vec3::Z));
+    }
+
+    #[test]
+    fn what_is_behind_a_surface_is_not_before_it() {
+        for angle_deg in [0.533, 60.0, 179.0, 200.0] {
+            for turned in 0..=36 {
+                let tilt = f64::from(turned) * 5.0 + 0.1;
+                let normal = Vec3::new(tilt.to_radians().sin(), 0.0, tilt.to_radians().cos());
+                let is_behind = tilt - 90.0 > angle_deg / 2.0;
+                assert_eq!(Cone::new(Vec3::Z, angle_deg).is_behind(normal), is_behind, "{angle_deg} {tilt}");
+            }
+        }
     }
 }

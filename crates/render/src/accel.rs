@@ -4,6 +4,7 @@
 //! precision, so the boxes are padded by more than single precision can lose. Coordinates are taken relative to the
 //! scene's centre, and a ray enters the hierarchy where it enters the scene's box: far origins cost no digits.
 
+use crate::recorder::{Recorder, Search};
 use crate::shapes::{Analytic, Bounds, COINCIDENT, Ray, Triangle};
 use glam::{UVec2, Vec3A};
 use obvhs::{Boundable, BvhBuildParams, aabb::Aabb, cwbvh::CwBvh, cwbvh::builder::build_cwbvh};
@@ -87,6 +88,7 @@ pub(crate) struct Accel {
     /// The padded box of everything; `None` if there is nothing.
     bounds: Option<Bounds>,
     padding: f64,
+    recorder: Recorder,
 }
 
 /// Boxes for the builder.
@@ -113,12 +115,16 @@ impl Accel {
         let leaves = in_leaf_order().map(Leaf::new).collect();
         let precedence = in_leaf_order().map(|p| (p.is_opaque, p.rank)).collect();
         let bounds = Some(widened(all, padding));
-        Ok(Self { bvh, leaves, precedence, analytic, center, bounds, padding })
+        Ok(Self { bvh, leaves, precedence, analytic, center, bounds, padding, recorder: Recorder::default() })
     }
 
     /// The box around all surfaces; none if there are none.
     pub fn extent(&self) -> Option<Bounds> {
         self.bounds.map(|b| widened(b, -self.padding))
+    }
+
+    pub fn recorder(&self) -> &Recorder {
+        &self.recorder
     }
 
     pub fn shape(&self, index: u32) -> &Analytic {
@@ -128,6 +134,9 @@ impl Accel {
     /// Nearest crossing before `t_max`. Of surfaces at the same place an opaque one wins, then one that shows its front, then the
     /// one of higher rank, as in Radiance.
     pub fn closest(&self, ray: &Ray, t_max: f64) -> Option<Hit> {
+        if self.recorder.is_on() {
+            self.recorder.add(ray, t_max, Search::Closest);
+        }
         let mut best: Option<(Hit, usize)> = None;
         self.crossings(ray, t_max, |hit, leaf| {
             let is_better = match best {
@@ -159,7 +168,21 @@ impl Accel {
     /// Calls `visit` for crossings before `t_max`, in no order, until it says stop. A crossing on the seam of two triangles
     /// may come twice.
     pub fn each_crossing(&self, ray: &Ray, t_max: f64, mut visit: impl FnMut(Hit) -> bool) {
+        if self.recorder.is_on() {
+            return self.each_recorded(ray, t_max, &mut visit);
+        }
         self.crossings(ray, t_max, |hit, _| if visit(hit) { Continue::UpTo(t_max) } else { Continue::Stop });
+    }
+
+    #[cold]
+    fn each_recorded(&self, ray: &Ray, t_max: f64, visit: &mut dyn FnMut(Hit) -> bool) {
+        let (mut visited, mut is_stopped) = (0, false);
+        self.crossings(ray, t_max, |hit, _| {
+            visited += 1;
+            is_stopped = !visit(hit);
+            if is_stopped { Continue::Stop } else { Continue::UpTo(t_max) }
+        });
+        self.recorder.add(ray, t_max, Search::Crossings { visited, is_stopped });
     }
 
     /// Where the ray crosses one object, whatever stands before it.

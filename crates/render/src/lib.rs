@@ -59,6 +59,7 @@ mod material;
 mod options;
 mod passes;
 mod probe;
+mod recorder;
 mod sensor;
 mod shapes;
 mod stopping;
@@ -75,6 +76,7 @@ pub use goniophotometer::{
 };
 pub use options::{DEFAULT_MAX_DEPTH, DEFAULT_SAMPLES, RenderOptions, WorldOptions};
 pub use probe::{FirstDeltas, FirstSurface, first_deltas, first_surfaces};
+pub use recorder::RecordedRay;
 pub use sensor::{Traced, trace_irradiance, trace_radiance};
 pub use world::World;
 

@@ -105,7 +105,7 @@ fn spherical([a, b, c]: [Vec3; 3], solid_angle: f64, [u, v]: [f64; 2]) -> Option
 fn on_arc(from: Vec3, to: Vec3, cosine: f64) -> Option<Vec3> {
     let across = to - from * to.dot(from);
     let across = across.try_normalize().or_else(|| (cosine >= 1.0).then_some(Vec3::ZERO))?;
-    (from * cosine + across * (1.0 - cosine * cosine).max(0.0).sqrt()).try_normalize()
+    Some(from * cosine + across * (1.0 - cosine * cosine).max(0.0).sqrt())
 }
 
 #[cfg(test)]

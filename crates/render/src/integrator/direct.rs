@@ -41,8 +41,13 @@ impl Integrator<'_> {
             (Smooth::Table(lobes), Some(backlight)) => lobes.backlit(backlight),
             _ => Rgb::ZERO,
         };
+        let one_sided = receiver.smooth.one_sided();
         for &sun in self.world.distant.suns() {
-            if let Some(sample) = self.world.distant.sample_sun(sun, sampler.next_2d()) {
+            let u = sampler.next_2d();
+            if one_sided.is_some_and(|normal| self.world.distant.get(sun).cone.is_behind(normal)) {
+                continue;
+            }
+            if let Some(sample) = self.world.distant.sample_sun(sun, u) {
                 let found = self.received(&receiver, &sample, &Target::sun(sun, &sample));
                 if found != Rgb::ZERO {
                     sum += found * self.weight_against_ties(path, met, sun, &sample);

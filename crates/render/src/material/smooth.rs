@@ -90,6 +90,15 @@ impl Smooth<'_> {
         }
     }
 
+    /// The normal of the side on which all that is scattered stays; `None` if that is not known.
+    pub fn one_sided(&self) -> Option<Vec3> {
+        match self {
+            Self::Sensor(frame) => Some(frame.z),
+            Self::Ward(lobes) => lobes.one_sided(),
+            _ => None,
+        }
+    }
+
     /// Cosine to a surface's normal, by which light counts.
     pub fn cosine(&self, direction: Vec3, normal: Vec3) -> f64 {
         match self {

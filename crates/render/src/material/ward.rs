@@ -241,6 +241,11 @@ impl WardLobes {
         self.albedo
     }
 
+    /// The normal, if nothing is transmitted.
+    pub fn one_sided(&self) -> Option<Vec3> {
+        (self.weights[1] + self.weights[3] <= 0.0).then_some(self.frame.z)
+    }
+
     /// Light sources light the diffuse lobes of a polished surface less towards grazing, as Radiance has it: only what its
     /// Fresnel reflection leaves.
     pub fn source_factor(&self, direction: Vec3) -> f64 {
