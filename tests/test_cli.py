@@ -231,6 +231,35 @@ def test_trace_refuses_wrong_rays(line: str, sunpeak: CommandLine, room: Path) -
     assert re.match(r"sunpeak: (standard input:2: |directions: row 1 )", answer.err), answer.err
 
 
+def test_a_named_portal_changes_the_error_alone(sunpeak: CommandLine, tmp_path: Path) -> None:
+    """A room whose front has a hole, under an even sky; the hole's polygon is of `void`."""
+    corners = {
+        "floor": "0 0 0 4 0 0 4 5 0 0 5 0",
+        "ceiling": "0 0 3 0 5 3 4 5 3 4 0 3",
+        "left": "0 0 0 0 5 0 0 5 3 0 0 3",
+        "right": "4 0 0 4 0 3 4 5 3 4 5 0",
+        "back": "0 5 0 4 5 0 4 5 3 0 5 3",
+    }
+    scene = tmp_path / "room.rad"
+    scene.write_text(
+        "void plastic wall 0 0 5 .5 .5 .5 0 0\nvoid glow bright 0 0 4 1 1 1 0\nbright source sky 0 0 4 0 0 1 180\n"
+        + "".join(f"wall polygon {name} 0 0 12 {points}\n" for name, points in corners.items())
+        + "wall polygon front 0 0 30 0 0 0 0 0 3 4 0 3 4 0 0 0 0 0 1 0 1 3 0 1 3 0 2 1 0 2 1 0 1\n"
+        "void polygon hole 0 0 12 1 0 1 1 0 2 3 0 2 3 0 1\n"
+    )
+    options = ("-I", "--errors", "--samples", 1024)
+    command = ("trace", scene, *options)
+    found = [
+        [float(word) for word in sunpeak(*command, *more, data="2 4 0.8 0 0 1\n").out.split()]
+        for more in ((), ("--portal", "hole"))
+    ]
+    (blind, *_, blind_error), (named, *_, named_error) = found
+    assert abs(blind - named) < 4 * np.hypot(blind_error, named_error)
+    assert named_error < 0.5 * blind_error
+    answer = sunpeak(*command, "--portal", "window", data="2 4 0.8 0 0 1\n", expect=1)
+    assert "portal 'window': no surface or modifier has this name" in answer.err
+
+
 def test_bsdf_info_and_through(sunpeak: CommandLine, tmp_path: Path) -> None:
     fabric(tmp_path, "t3-1024")
     about = json.loads(sunpeak("bsdf", "info", "shade.xml", "--json", folder=tmp_path).out)

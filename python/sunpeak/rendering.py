@@ -1,6 +1,6 @@
 """Rendering: pictures, rays and sensors by path tracing."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Literal
 
@@ -24,12 +24,16 @@ class World:
         self._core = core
 
     @classmethod
-    def compile(cls, scene: Scene, peak: Peak = "split") -> "World":
+    def compile(cls, scene: Scene, peak: Peak = "split", portals: Sequence[str] = ()) -> "World":
         """Compile a scene: geometry, materials, lights, and the BSDF files that it names.
+
+        Light comes into rooms through shades and windows, to which paths are sent; they are found. `portals` names
+        more: surfaces or modifiers, of openings without glass, say, or of one polygon in place of very many panes
+        (with the modifier `void` it is invisible). They change how fast numbers converge, not the numbers.
 
         Raises `InputError` with file, line and column for what the scene does not allow.
         """
-        return cls(_core.World.compile(scene._core, peak))
+        return cls(_core.World.compile(scene._core, peak, list(portals)))
 
 
 def render(
@@ -46,6 +50,7 @@ def render(
     threads: int | None = None,
     max_bounces: int | None = None,
     ambient: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    portals: Sequence[str] = (),
     progress: bool | Callback = False,
 ) -> Picture:
     """Render a picture of `size` (width, height) pixels.
@@ -61,13 +66,14 @@ def render(
     The same seed and number of samples give the same picture on any number of `threads` (None: all cores).
     `max_bounces` limits diffuse bounces, as Radiance's `-ab`; None is no limit. `ambient` (three channels
     [W sr⁻¹ m⁻²]) stands for all diffuse light past them, as Radiance's `-av`. `peak` says which part of `aBSDF`
-    tables goes straight through; a `World` has chosen already.
+    tables goes straight through, and `portals` names where light comes in beside shades and windows (see
+    `World.compile`); a `World` has chosen both already.
 
     `progress` shows a bar on standard error, or is a function that is called with the work done and in all. Ctrl-C
     stops the rendering (`KeyboardInterrupt`).
     """
     width, height = size
-    world = compiled(scene, peak)
+    world = compiled(scene, peak, portals)
     goal = (until, 0.0) if isinstance(until, str) else until
     with reporting(progress, "rendering") as callback:
         picture = _core.render(
@@ -104,6 +110,7 @@ def trace(
     threads: int | None = None,
     max_bounces: int | None = None,
     ambient: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    portals: Sequence[str] = (),
     progress: bool | Callback = False,
 ) -> Floats:
     """Radiance along rays (n, 3) [W sr⁻¹ m⁻²], or irradiance at sensors [W m⁻²]: three channels (n, 3).
@@ -118,7 +125,7 @@ def trace(
     points, towards = rows(origins), normalized(rows(directions))
     if len(points) != len(towards):
         raise _core.InputError(f"{len(points)} origins and {len(towards)} directions; expected as many of both")
-    world = compiled(scene, peak)
+    world = compiled(scene, peak, portals)
     with reporting(progress, "tracing") as callback:
         values, errors = _core.trace(
             world._core,
@@ -140,9 +147,9 @@ def trace(
     return np.column_stack([values, np.full(len(values), np.nan) if errors is None else errors])
 
 
-def compiled(scene: Scene | World, peak: Peak) -> World:
+def compiled(scene: Scene | World, peak: Peak, portals: Sequence[str] = ()) -> World:
     """Compile the scene unless that was done."""
-    return scene if isinstance(scene, World) else World.compile(scene, peak)
+    return scene if isinstance(scene, World) else World.compile(scene, peak, portals)
 
 
 def normalized(vectors: Floats) -> Floats:

@@ -24,8 +24,9 @@ pub struct PyWorld(pub Arc<World>);
 #[pymethods]
 impl PyWorld {
     #[staticmethod]
-    fn compile(py: Python<'_>, scene: &PyScene, peak: &str) -> PyResult<Self> {
-        let options = WorldOptions { peak: peak_rule(peak)?, ..WorldOptions::default() };
+    #[pyo3(signature = (scene, peak, portals=Vec::new()))]
+    fn compile(py: Python<'_>, scene: &PyScene, peak: &str, portals: Vec<String>) -> PyResult<Self> {
+        let options = WorldOptions { peak: peak_rule(peak)?, portals, ..WorldOptions::default() };
         let world = py.detach(|| World::compile(&scene.0, &options)).or_raise()?;
         Ok(Self(Arc::new(world)))
     }

@@ -1,6 +1,7 @@
 //! A scene compiled for rendering.
 
 mod compile;
+mod portals;
 
 use crate::WorldOptions;
 use crate::accel::{Accel, Hit};

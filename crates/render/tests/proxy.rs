@@ -21,7 +21,7 @@ fn world_with(bsdf: Bsdf, peak: PeakRule, text: &str) -> World {
     let options = LoadOptions { cwd: Some(folder), ..LoadOptions::default() };
     let scene = Scene::parse(text, "room.rad", &options).expect("a scene");
     let loaded = vec![(file, Arc::new(bsdf))];
-    World::compile(&scene, &WorldOptions { peak, loaded }).expect("compiles")
+    World::compile(&scene, &WorldOptions { peak, loaded, ..Default::default() }).expect("compiles")
 }
 
 /// A black sheet at 1.5 m between two proxies 1 m apart, all wide; they face down, so that the sheet is behind the lower one.

@@ -53,6 +53,15 @@ MaxBounces = Annotated[
     int | None,
     typer.Option(min=0, help="Diffuse bounces, as Radiance's -ab; no limit without it.", rich_help_panel=SAMPLING),
 ]
+Portals = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="NAME",
+        help="Surface or modifier through which light comes in, beside shades and windows, which are found: an opening "
+        "without glass, or one polygon (of void) before very many panes; may come again.",
+        rich_help_panel=SAMPLING,
+    ),
+]
 SearchPath = Annotated[
     list[Path] | None,
     typer.Option(

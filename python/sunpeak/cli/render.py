@@ -38,6 +38,7 @@ def command(
     seed: options.Seed = 0,
     threads: options.Threads = None,
     max_bounces: options.MaxBounces = None,
+    portal: options.Portals = None,
     png: Annotated[
         bool, typer.Option("--png", help="Tone-mapped and false-colour PNG beside the picture, too.")
     ] = False,
@@ -66,6 +67,7 @@ def command(
         seed=seed,
         threads=threads,
         max_bounces=max_bounces,
+        portals=portal or (),
         progress=not quiet,
     )
     picture.save(output)

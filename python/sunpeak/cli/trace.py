@@ -34,6 +34,7 @@ def command(
     seed: options.Seed = 0,
     threads: options.Threads = None,
     max_bounces: options.MaxBounces = None,
+    portal: options.Portals = None,
     search_path: options.SearchPath = None,
     allow_commands: options.AllowCommands = False,
     quiet: options.Quiet = False,
@@ -61,6 +62,7 @@ def command(
         seed=seed,
         threads=threads,
         max_bounces=max_bounces,
+        portals=portal or (),
         progress=not quiet,
     )
     if photometric:

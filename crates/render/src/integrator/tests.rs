@@ -81,7 +81,7 @@ fn estimate(world: &World, sensors: &[(Vec3, Vec3)], samples: u32, seed: u64) ->
 fn worlds(text: &str, bsdf: Arc<Bsdf>, peak: PeakRule, folder: &Path) -> [World; 2] {
     let load = LoadOptions { cwd: Some(folder.to_path_buf()), ..LoadOptions::default() };
     let scene = Scene::parse(text, "room.rad", &load).expect("a room");
-    let options = WorldOptions { peak, loaded: vec![(folder.join("cloth.xml"), bsdf)] };
+    let options = WorldOptions { peak, loaded: vec![(folder.join("cloth.xml"), bsdf)], ..Default::default() };
     let compile = || World::compile(&scene, &options).expect("compiles");
     let mut plain = compile();
     (plain.guide, plain.backlights, plain.sun_patches) = (None, Default::default(), None);

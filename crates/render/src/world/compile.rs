@@ -1,9 +1,10 @@
 //! From what the scene files say to what the renderer asks.
 
+use super::portals::{NamedPortals, windows};
 use super::{Facing, Object, World};
 use crate::WorldOptions;
 use crate::accel::{Accel, Geometry, Primitive};
-use crate::backlight::{Backlights, is_window};
+use crate::backlight::Backlights;
 use crate::guide::{Guide, ScatteredSun};
 use crate::light::{Distant, DistantSources, Lamp, LampShape, Lamps};
 use crate::material::{
@@ -26,13 +27,11 @@ const MAX_MODIFIER_DEPTH: usize = 100;
 /// Triangles of a mesh that shadow rays look for one by one.
 const MAX_LAMPS_OF_MESH: usize = 64;
 
-/// Of more pieces of glass than this windows are not looked for.
-const MAX_PANES: usize = 64;
-
 pub(super) fn compile(scene: &Scene, options: &WorldOptions) -> Result<World> {
     let mut compiler = Compiler::new(scene, options);
     for (index, surface) in scene.surfaces.iter().enumerate() {
         compiler.current = index as u32;
+        compiler.portals.add(scene, surface);
         compiler.add(surface)?;
     }
     compiler.finish()
@@ -55,6 +54,8 @@ struct Compiler<'s> {
     shades: Vec<(u32, Triangle)>,
     /// Flat pieces of glass, likewise.
     panes: Vec<(u32, Triangle)>,
+    /// What the caller has named.
+    portals: NamedPortals<'s>,
     meshes: Vec<MeshSurface>,
     /// Of each object: where its modifier stands in the scene. Of surfaces at the same place the later is seen.
     ranks: Vec<u32>,
@@ -81,6 +82,7 @@ impl<'s> Compiler<'s> {
             prisms: Vec::new(),
             shades: Vec::new(),
             panes: Vec::new(),
+            portals: NamedPortals::new(&options.portals),
             meshes: Vec::new(),
             ranks: Vec::new(),
             surfaces: Vec::new(),
@@ -112,7 +114,7 @@ impl<'s> Compiler<'s> {
         };
         world.backlights = Backlights::find(&world, &self.shades);
         let shades = self.shades.iter().map(|&(_, triangle)| triangle);
-        let portals: Vec<Triangle> = shades.chain(windows(&world, &self.panes)).collect();
+        let portals = self.portals.with(shades.chain(windows(&world, &self.panes)))?;
         let patches = SunPatches::new(&world, &portals);
         world.guide = Guide::new(portals, suns);
         world.sun_patches = patches.filter(|patches| patches.count(&world));
@@ -549,19 +551,6 @@ impl<'s> Compiler<'s> {
         self.bsdfs.insert(file, bsdf.clone());
         Ok(bsdf)
     }
-}
-
-/// Pieces of those panes that sky and ground come through into a room.
-fn windows(world: &World, panes: &[(u32, Triangle)]) -> Vec<Triangle> {
-    if panes.len() > MAX_PANES || !world.distant.has_dome() || world.has_volumes {
-        return Vec::new();
-    }
-    let objects = panes.chunk_by(|a, b| a.0 == b.0);
-    let pieces = objects.filter_map(|pieces| {
-        let triangles: Vec<Triangle> = pieces.iter().map(|&(_, triangle)| triangle).collect();
-        is_window(world, pieces[0].0, &triangles).then_some(triangles)
-    });
-    pieces.flatten().collect()
 }
 
 /// Some point of a flat surface.

@@ -1,0 +1,111 @@
+//! Where light comes into a room: shades and windows, which are found, and what the caller names.
+
+use super::World;
+use crate::backlight::is_window;
+use crate::guide::MAX_TRIANGLES;
+use crate::shapes::{Polygon, Triangle};
+use sunpeak_core::{Error, Result};
+use sunpeak_scene::{ModifierId, Scene, Shape, Surface};
+
+/// Of more pieces of glass than this windows are not looked for.
+const MAX_PANES: usize = 64;
+
+/// What the caller has named.
+pub(super) struct NamedPortals<'s> {
+    names: Vec<Named<'s>>,
+    pieces: Vec<Triangle>,
+}
+
+struct Named<'s> {
+    name: &'s str,
+    /// How many surfaces are meant, and how many pieces they have.
+    surfaces: usize,
+    pieces: usize,
+}
+
+impl<'s> NamedPortals<'s> {
+    pub fn new(names: &'s [String]) -> Self {
+        let names = names.iter().map(|name| Named { name, surfaces: 0, pieces: 0 }).collect();
+        Self { names, pieces: Vec::new() }
+    }
+
+    /// Take in a surface that is meant, visible or not.
+    pub fn add(&mut self, scene: &Scene, surface: &Surface) {
+        let is_meant = |named: &&mut Named| {
+            named.name == surface.name
+                || modifiers(scene, surface).any(|id| scene.modifiers[id.0].name == named.name)
+        };
+        let Some(named) = self.names.iter_mut().find(is_meant) else { return };
+        let pieces = pieces(&surface.shape);
+        named.surfaces += 1;
+        named.pieces += pieces.len();
+        self.pieces.extend(pieces);
+    }
+
+    /// With those that were found, as many as can be looked at: if that is too many, what is named alone.
+    ///
+    /// # Errors
+    /// A name that names nothing, nothing flat, or too much.
+    pub fn with(self, found: impl Iterator<Item = Triangle>) -> Result<Vec<Triangle>> {
+        for Named { name, surfaces, pieces } in &self.names {
+            if *surfaces == 0 {
+                return Err(Error::value(format!("portal '{name}': no surface or modifier has this name")));
+            }
+            if *pieces == 0 {
+                return Err(Error::value(format!("portal '{name}': it is no polygon and no mesh")));
+            }
+        }
+        if self.pieces.len() > MAX_TRIANGLES {
+            return Err(Error::value(format!(
+                "the portals have {} triangles, and paths can be sent to {MAX_TRIANGLES}: name a polygon that spans the opening (of \
+                 modifier void it is invisible)",
+                self.pieces.len()
+            )));
+        }
+        let mut all = self.pieces;
+        let named = all.len();
+        for piece in found {
+            if !all[..named].iter().any(|known| known.0 == piece.0) {
+                all.push(piece);
+            }
+        }
+        if named > 0 && all.len() > MAX_TRIANGLES {
+            all.truncate(named);
+        }
+        Ok(all)
+    }
+}
+
+/// The modifier of a surface, its modifier, and so on.
+fn modifiers<'s>(scene: &'s Scene, surface: &Surface) -> impl Iterator<Item = ModifierId> + 's {
+    std::iter::successors(surface.modifier, |id| scene.modifiers[id.0].parent).take(scene.modifiers.len())
+}
+
+fn pieces(shape: &Shape) -> Vec<Triangle> {
+    match shape {
+        Shape::Polygon(vertices) if vertices.iter().all(|v| v.is_finite()) => {
+            let polygon = Polygon::new(vertices.clone());
+            polygon.and_then(|polygon| polygon.triangulate()).unwrap_or_default()
+        }
+        Shape::Mesh(mesh) => mesh
+            .triangles
+            .iter()
+            .map(|corners| Triangle(corners.map(|i| mesh.vertices[i as usize])))
+            .filter(|triangle| triangle.area() > 0.0)
+            .collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// Pieces of those panes that sky and ground come through into a room.
+pub(super) fn windows(world: &World, panes: &[(u32, Triangle)]) -> Vec<Triangle> {
+    if panes.len() > MAX_PANES || !world.distant.has_dome() || world.has_volumes {
+        return Vec::new();
+    }
+    let objects = panes.chunk_by(|a, b| a.0 == b.0);
+    let pieces = objects.filter_map(|pieces| {
+        let triangles: Vec<Triangle> = pieces.iter().map(|&(_, triangle)| triangle).collect();
+        is_window(world, pieces[0].0, &triangles).then_some(triangles)
+    });
+    pieces.flatten().collect()
+}
