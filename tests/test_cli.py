@@ -232,20 +232,23 @@ def test_trace_refuses_wrong_rays(line: str, sunpeak: CommandLine, room: Path) -
 
 
 def test_a_named_portal_changes_the_error_alone(sunpeak: CommandLine, tmp_path: Path) -> None:
-    """A room whose front has a hole, under an even sky; the hole's polygon is of `void`."""
+    """A room whose front leaves an opening between four polygons, under an even sky; the opening's is of `void`."""
     corners = {
         "floor": "0 0 0 4 0 0 4 5 0 0 5 0",
         "ceiling": "0 0 3 0 5 3 4 5 3 4 0 3",
         "left": "0 0 0 0 5 0 0 5 3 0 0 3",
         "right": "4 0 0 4 0 3 4 5 3 4 5 0",
         "back": "0 5 0 4 5 0 4 5 3 0 5 3",
+        "below": "0 0 0 0 0 1 4 0 1 4 0 0",
+        "above": "0 0 2 0 0 3 4 0 3 4 0 2",
+        "beside": "0 0 1 0 0 2 1 0 2 1 0 1",
+        "beyond": "3 0 1 3 0 2 4 0 2 4 0 1",
     }
     scene = tmp_path / "room.rad"
     scene.write_text(
         "void plastic wall 0 0 5 .5 .5 .5 0 0\nvoid glow bright 0 0 4 1 1 1 0\nbright source sky 0 0 4 0 0 1 180\n"
         + "".join(f"wall polygon {name} 0 0 12 {points}\n" for name, points in corners.items())
-        + "wall polygon front 0 0 30 0 0 0 0 0 3 4 0 3 4 0 0 0 0 0 1 0 1 3 0 1 3 0 2 1 0 2 1 0 1\n"
-        "void polygon hole 0 0 12 1 0 1 1 0 2 3 0 2 3 0 1\n"
+        + "void polygon hole 0 0 12 1 0 1 1 0 2 3 0 2 3 0 1\n"
     )
     options = ("-I", "--errors", "--samples", 1024)
     command = ("trace", scene, *options)

@@ -27,9 +27,10 @@ class World:
     def compile(cls, scene: Scene, peak: Peak = "split", portals: Sequence[str] = ()) -> "World":
         """Compile a scene: geometry, materials, lights, and the BSDF files that it names.
 
-        Light comes into rooms through shades and windows, to which paths are sent; they are found. `portals` names
-        more: surfaces or modifiers, of openings without glass, say, or of one polygon in place of very many panes
-        (with the modifier `void` it is invisible). They change how fast numbers converge, not the numbers.
+        Light comes into rooms through shades, windows and holes in polygons, to which paths are sent; they are found.
+        `portals` names more: surfaces or modifiers, of an opening between walls, say, or of one polygon in place of
+        very many panes (with the modifier `void` it is invisible). They change how fast numbers converge, and not the
+        numbers.
 
         Raises `InputError` with file, line and column for what the scene does not allow.
         """
@@ -66,7 +67,7 @@ def render(
     The same seed and number of samples give the same picture on any number of `threads` (None: all cores).
     `max_bounces` limits diffuse bounces, as Radiance's `-ab`; None is no limit. `ambient` (three channels
     [W sr⁻¹ m⁻²]) stands for all diffuse light past them, as Radiance's `-av`. `peak` says which part of `aBSDF`
-    tables goes straight through, and `portals` names where light comes in beside shades and windows (see
+    tables goes straight through, and `portals` names where else light comes in (see
     `World.compile`); a `World` has chosen both already.
 
     `progress` shows a bar on standard error, or is a function that is called with the work done and in all. Ctrl-C

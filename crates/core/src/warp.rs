@@ -21,7 +21,7 @@ pub fn square_to_disk([u, v]: [f64; 2]) -> [f64; 2] {
 pub fn circle(turns: f64) -> [f64; 2] {
     let quarters = (4.0 * turns + 0.5) as u32;
     let [cos, sin] = within_octant(2.0 * PI * (turns - 0.25 * f64::from(quarters)));
-    let [x, y] = if quarters % 2 == 0 { [cos, sin] } else { [sin, cos] };
+    let [x, y] = if quarters.is_multiple_of(2) { [cos, sin] } else { [sin, cos] };
     [if (quarters + 1) & 2 == 0 { x } else { -x }, if quarters & 2 == 0 { y } else { -y }]
 }
 

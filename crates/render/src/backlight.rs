@@ -24,6 +24,9 @@ const LEAST_SHARE: f64 = 0.6;
 /// Panes that a probe passes.
 const MAX_PANES: usize = 8;
 
+/// So near to the plane of a hole, over its size, a surface is in it.
+const IN_A_HOLE: f64 = 1e-3;
+
 /// The far field behind one side of a shade, and what the shade gives off on the other.
 #[derive(Debug)]
 pub(crate) struct Backlight {
@@ -134,22 +137,44 @@ impl From {
 
 /// Is a flat piece of glass a window: the far field on one side, a room on the other, and no shade or other pane close to it there?
 pub(crate) fn is_window(world: &World, object: u32, triangles: &[Triangle]) -> bool {
-    let Facing::Flat(normal) = world.objects[object as usize].facing else { return false };
-    let sides = [normal, -normal].map(|away| probe(world, object, triangles, away).is_some());
-    let inside = match sides {
-        [true, false] => -normal,
-        [false, true] => normal,
-        _ => return false,
+    let Some((inside, _)) = room_side(world, object, triangles) else { return false };
+    !is_veiled(world, object, triangles, inside)
+}
+
+/// Is a hole of a wall an opening: the far field on one side, with nothing in the hole or before it, and a room on the other?
+pub(crate) fn is_opening(world: &World, object: u32, hole: &[Triangle]) -> bool {
+    let Some((inside, panes)) = room_side(world, object, hole) else { return false };
+    let reach = IN_A_HOLE * hole.iter().map(Triangle::area).sum::<f64>().sqrt();
+    let is_filled = |i: &u64| {
+        let (point, _) = probing_ray(object, hole, inside, *i);
+        world.accel.closest(&Ray::new(point + inside * reach, -inside), 2.0 * reach).is_some()
     };
+    panes.is_empty()
+        && (0..PROBES).filter(is_filled).count() < PROBES as usize / 2
+        && !is_veiled(world, object, hole, inside)
+}
+
+/// To which side of a flat piece of glass, or of a hole, the room lies, if the far field is on the other; and the panes before that.
+fn room_side(world: &World, object: u32, triangles: &[Triangle]) -> Option<(Vec3, Vec<Pane>)> {
+    let Facing::Flat(normal) = world.objects[object as usize].facing else { return None };
+    match [normal, -normal].map(|away| probe(world, object, triangles, away)) {
+        [Some(panes), None] => Some((-normal, panes)),
+        [None, Some(panes)] => Some((normal, panes)),
+        _ => None,
+    }
+}
+
+/// Is there a shade or a pane close by on this side?
+fn is_veiled(world: &World, object: u32, triangles: &[Triangle], inside: Vec3) -> bool {
     let first = |i| {
         let (point, direction) = probing_ray(object, triangles, inside, i);
         world.accel.closest(&Ray::new(point, direction), f64::INFINITY)
     };
-    let is_veiled = |i: &u64| {
+    let is_met = |i: &u64| {
         let material = first(*i).map(|hit| world.material(world.object(&hit).material));
         matches!(material, Some(Material::Table(_) | Material::Glass(_)))
     };
-    (0..PROBES).filter(is_veiled).count() < PROBES as usize / 2
+    (0..PROBES).filter(is_met).count() >= PROBES as usize / 2
 }
 
 /// A ray from a point of a surface.

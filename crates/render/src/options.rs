@@ -11,8 +11,8 @@ pub struct WorldOptions {
     pub peak: PeakRule,
     /// Tables that are already loaded, by the file that the scene names; others are read.
     pub loaded: Vec<(PathBuf, Arc<Bsdf>)>,
-    /// Names of surfaces or modifiers through which light comes in, beside shades and windows, which are found: openings without
-    /// glass, or one polygon instead of very many panes. Paths are sent to them; what the scene looks like does not change.
+    /// Names of surfaces or modifiers through which light comes in, beside shades, windows and holes in polygons, which are found: openings
+    /// between walls, or one polygon instead of very many panes. Paths are sent to them; what the scene looks like does not change.
     pub portals: Vec<String>,
 }
 

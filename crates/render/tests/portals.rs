@@ -8,12 +8,16 @@ use sunpeak_render::{World, WorldOptions, trace_irradiance};
 use sunpeak_scene::{LoadOptions, Scene};
 
 /// A room of 4 by 5 by 3 metres whose south wall has a hole of 2 by 1 metres, under an even sky.
-const ROOM: &str = "void plastic wall 0 0 5 .5 .5 .5 0 0\nvoid glow bright 0 0 4 100 100 100 0\n\
+const WALLS: &str = "void plastic wall 0 0 5 .5 .5 .5 0 0\nvoid glow bright 0 0 4 100 100 100 0\n\
      bright source sky 0 0 4 0 0 1 180\nbright source ground 0 0 4 0 0 -1 180\n\
      wall polygon f 0 0 12 0 0 0 4 0 0 4 5 0 0 5 0\nwall polygon c 0 0 12 0 0 3 0 5 3 4 5 3 4 0 3\n\
      wall polygon l 0 0 12 0 0 0 0 5 0 0 5 3 0 0 3\nwall polygon r 0 0 12 4 0 0 4 0 3 4 5 3 4 5 0\n\
-     wall polygon b 0 0 12 0 5 0 4 5 0 4 5 3 0 5 3\n\
-     wall polygon front 0 0 30 0 0 0 0 0 3 4 0 3 4 0 0 0 0 0 1 0 1 3 0 1 3 0 2 1 0 2 1 0 1\n";
+     wall polygon b 0 0 12 0 5 0 4 5 0 4 5 3 0 5 3\n";
+const FRONT: &str = "wall polygon front 0 0 30 0 0 0 0 0 3 4 0 3 4 0 0 0 0 0 1 0 1 3 0 1 3 0 2 1 0 2 1 0 1\n";
+/// Around the same opening, without a hole.
+const FRONT_IN_PIECES: &str = "wall polygon below 0 0 12 0 0 0 0 0 1 4 0 1 4 0 0\n\
+     wall polygon above 0 0 12 0 0 2 0 0 3 4 0 3 4 0 2\nwall polygon left 0 0 12 0 0 1 0 0 2 1 0 2 1 0 1\n\
+     wall polygon right 0 0 12 3 0 1 3 0 2 4 0 2 4 0 1\n";
 const OPENING: &str = "polygon opening 0 0 12 1 0 1 1 0 2 3 0 2 3 0 1\n";
 
 fn compiled(text: &str, portals: &[&str]) -> Result<World, String> {
@@ -31,7 +35,7 @@ fn sensor(world: &World, paths: u32) -> (f64, f64) {
 
 #[test]
 fn a_named_opening_is_found_sooner_and_is_no_brighter() {
-    let text = format!("{ROOM}void {OPENING}");
+    let text = format!("{WALLS}{FRONT_IN_PIECES}void {OPENING}");
     let (blind, blind_error) = sensor(&compiled(&text, &[]).expect("compiles"), 1 << 14);
     let (named, named_error) = sensor(&compiled(&text, &["opening"]).expect("compiles"), 1 << 14);
     assert!((blind - named).abs() < 3.5 * blind_error.hypot(named_error), "{blind} {named}");
@@ -40,8 +44,20 @@ fn a_named_opening_is_found_sooner_and_is_no_brighter() {
 }
 
 #[test]
+fn a_hole_in_a_wall_is_found() {
+    let paths = 1 << 14;
+    let named = sensor(
+        &compiled(&format!("{WALLS}{FRONT_IN_PIECES}void {OPENING}"), &["opening"]).expect("compiles"),
+        paths,
+    );
+    let found = sensor(&compiled(&format!("{WALLS}{FRONT}"), &[]).expect("compiles"), paths);
+    assert!((found.0 - named.0).abs() < 3.5 * found.1.hypot(named.1), "{found:?} {named:?}");
+    assert!(found.1 < 1.3 * named.1, "{found:?} {named:?}");
+}
+
+#[test]
 fn what_is_found_anyway_may_be_named() {
-    let text = format!("{ROOM}void glass pane 0 0 3 .96 .96 .96\npane {OPENING}");
+    let text = format!("{WALLS}{FRONT}void glass pane 0 0 3 .96 .96 .96\npane {OPENING}");
     let found = sensor(&compiled(&text, &[]).expect("compiles"), 256);
     for name in ["opening", "pane"] {
         assert_eq!(sensor(&compiled(&text, &[name]).expect("compiles"), 256), found, "{name}");
@@ -52,9 +68,9 @@ fn what_is_found_anyway_may_be_named() {
 fn refusals_say_what_to_name() {
     let many = "wall polygon piece 0 0 9 0 0 0 1 0 0 0 1 0\n".repeat(33);
     for (text, name, words) in [
-        (ROOM.to_string(), "window", "no surface or modifier has this name"),
-        (ROOM.to_string(), "sky", "no polygon and no mesh"),
-        (format!("{ROOM}{many}"), "piece", "33 triangles"),
+        (WALLS.to_string(), "window", "no surface or modifier has this name"),
+        (WALLS.to_string(), "sky", "no polygon and no mesh"),
+        (format!("{WALLS}{many}"), "piece", "33 triangles"),
     ] {
         let message = compiled(&text, &[name]).map(|_| ()).expect_err("is refused");
         assert!(message.contains(words), "{message}");

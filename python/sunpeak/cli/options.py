@@ -57,8 +57,8 @@ Portals = Annotated[
     list[str] | None,
     typer.Option(
         metavar="NAME",
-        help="Surface or modifier through which light comes in, beside shades and windows, which are found: an opening "
-        "without glass, or one polygon (of void) before very many panes; may come again.",
+        help="Surface or modifier through which light comes in, beside shades, windows and holes in polygons, which "
+        "are found: an opening between walls, or one polygon (of void) before very many panes; may come again.",
         rich_help_panel=SAMPLING,
     ),
 ]

@@ -75,8 +75,7 @@ impl Polygon {
         if let [a, b, c] = self.vertices[..] {
             return Some(vec![Triangle([a, b, c])]);
         }
-        let mut rings = self.rings();
-        rings.sort_by(|a, b| self.ring_area(b).abs().total_cmp(&self.ring_area(a).abs()));
+        let rings = self.rings();
         let (outline, holes) = rings.split_first()?;
         let flat = rings.iter().flatten().map(|&i| self.flat(i));
         let starts = ring_starts(outline, holes);
@@ -92,11 +91,22 @@ impl Polygon {
         self.is_covered_by(&triangles, covered).then_some(triangles)
     }
 
+    /// The holes, each in triangles.
+    pub fn holes(&self) -> Vec<Vec<Triangle>> {
+        // Two triangles and the ends of the seam.
+        if self.vertices.len() < 8 {
+            return Vec::new();
+        }
+        let rings = self.rings();
+        let polygon = |ring: &Vec<usize>| Self::new(ring.iter().map(|&i| self.vertices[i]).collect());
+        rings.iter().skip(1).filter_map(polygon).filter_map(|hole| hole.triangulate()).collect()
+    }
+
     fn flat(&self, vertex: usize) -> [f64; 2] {
         self.projection.apply(self.vertices[vertex])
     }
 
-    /// The outline taken apart where it comes back to a place: the outer ring and, cut off their seams, the holes. (Holes
+    /// The outline taken apart where it comes back to a place: the outer ring first and, cut off their seams, the holes. (Holes
     /// may run either way round: what is inside is told by the even-odd rule.)
     fn rings(&self) -> Vec<Vec<usize>> {
         let mut rings = Vec::new();
@@ -110,6 +120,7 @@ impl Polygon {
         }
         rings.push(path);
         rings.retain(|ring| ring.len() >= 3);
+        rings.sort_by(|a, b| self.ring_area(b).abs().total_cmp(&self.ring_area(a).abs()));
         rings
     }
 

@@ -1,6 +1,6 @@
 //! From what the scene files say to what the renderer asks.
 
-use super::portals::{NamedPortals, windows};
+use super::portals::{NamedPortals, openings, windows};
 use super::{Facing, Object, World};
 use crate::WorldOptions;
 use crate::accel::{Accel, Geometry, Primitive};
@@ -54,6 +54,8 @@ struct Compiler<'s> {
     shades: Vec<(u32, Triangle)>,
     /// Flat pieces of glass, likewise.
     panes: Vec<(u32, Triangle)>,
+    /// Holes of opaque polygons, each with its polygon.
+    holes: Vec<(u32, Vec<Triangle>)>,
     /// What the caller has named.
     portals: NamedPortals<'s>,
     meshes: Vec<MeshSurface>,
@@ -82,6 +84,7 @@ impl<'s> Compiler<'s> {
             prisms: Vec::new(),
             shades: Vec::new(),
             panes: Vec::new(),
+            holes: Vec::new(),
             portals: NamedPortals::new(&options.portals),
             meshes: Vec::new(),
             ranks: Vec::new(),
@@ -114,7 +117,8 @@ impl<'s> Compiler<'s> {
         };
         world.backlights = Backlights::find(&world, &self.shades);
         let shades = self.shades.iter().map(|&(_, triangle)| triangle);
-        let portals = self.portals.with(shades.chain(windows(&world, &self.panes)))?;
+        let portals =
+            self.portals.with(shades.chain(windows(&world, &self.panes)), openings(&world, &self.holes))?;
         let patches = SunPatches::new(&world, &portals);
         world.guide = Guide::new(portals, suns);
         world.sun_patches = patches.filter(|patches| patches.count(&world));
@@ -189,6 +193,9 @@ impl<'s> Compiler<'s> {
                 }
                 if matches!(self.materials[material.0 as usize], Material::Glass(_)) {
                     self.panes.extend(triangles.iter().map(|&triangle| (object, triangle)));
+                }
+                if self.objects[object as usize].is_wall {
+                    self.holes.extend(polygon.holes().into_iter().map(|hole| (object, hole)));
                 }
                 triangles.into_iter().for_each(|t| self.add_primitive(object, Geometry::Triangle(t)));
             }

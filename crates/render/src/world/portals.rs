@@ -1,7 +1,7 @@
 //! Where light comes into a room: shades and windows, which are found, and what the caller names.
 
 use super::World;
-use crate::backlight::is_window;
+use crate::backlight::{is_opening, is_window};
 use crate::guide::MAX_TRIANGLES;
 use crate::shapes::{Polygon, Triangle};
 use sunpeak_core::{Error, Result};
@@ -9,6 +9,9 @@ use sunpeak_scene::{ModifierId, Scene, Shape, Surface};
 
 /// Of more pieces of glass than this windows are not looked for.
 const MAX_PANES: usize = 64;
+
+/// Of more holes in walls than this none is taken for an opening.
+const MAX_HOLES: usize = 64;
 
 /// What the caller has named.
 pub(super) struct NamedPortals<'s> {
@@ -42,11 +45,16 @@ impl<'s> NamedPortals<'s> {
         self.pieces.extend(pieces);
     }
 
-    /// With those that were found, as many as can be looked at: if that is too many, what is named alone.
+    /// With shades and windows that were found, and with openings if there is room for them. If even the former are too many to be looked
+    /// at, what is named alone.
     ///
     /// # Errors
     /// A name that names nothing, nothing flat, or too much.
-    pub fn with(self, found: impl Iterator<Item = Triangle>) -> Result<Vec<Triangle>> {
+    pub fn with(
+        self,
+        found: impl Iterator<Item = Triangle>,
+        openings: Vec<Triangle>,
+    ) -> Result<Vec<Triangle>> {
         for Named { name, surfaces, pieces } in &self.names {
             if *surfaces == 0 {
                 return Err(Error::value(format!("portal '{name}': no surface or modifier has this name")));
@@ -62,15 +70,15 @@ impl<'s> NamedPortals<'s> {
                 self.pieces.len()
             )));
         }
-        let mut all = self.pieces;
-        let named = all.len();
-        for piece in found {
-            if !all[..named].iter().any(|known| known.0 == piece.0) {
-                all.push(piece);
-            }
+        let (mut all, named) = (self.pieces.clone(), self.pieces);
+        let is_new = |piece: &Triangle| !named.iter().any(|known| known.0 == piece.0);
+        all.extend(found.filter(is_new));
+        if !named.is_empty() && all.len() > MAX_TRIANGLES {
+            return Ok(named);
         }
-        if named > 0 && all.len() > MAX_TRIANGLES {
-            all.truncate(named);
+        let openings: Vec<Triangle> = openings.into_iter().filter(is_new).collect();
+        if all.len() + openings.len() <= MAX_TRIANGLES {
+            all.extend(openings);
         }
         Ok(all)
     }
@@ -99,7 +107,7 @@ fn pieces(shape: &Shape) -> Vec<Triangle> {
 
 /// Pieces of those panes that sky and ground come through into a room.
 pub(super) fn windows(world: &World, panes: &[(u32, Triangle)]) -> Vec<Triangle> {
-    if panes.len() > MAX_PANES || !world.distant.has_dome() || world.has_volumes {
+    if panes.len() > MAX_PANES || !may_have_portals(world) {
         return Vec::new();
     }
     let objects = panes.chunk_by(|a, b| a.0 == b.0);
@@ -108,4 +116,17 @@ pub(super) fn windows(world: &World, panes: &[(u32, Triangle)]) -> Vec<Triangle>
         is_window(world, pieces[0].0, &triangles).then_some(triangles)
     });
     pieces.flatten().collect()
+}
+
+/// Pieces of those holes in walls that sky and ground come through into a room.
+pub(super) fn openings(world: &World, holes: &[(u32, Vec<Triangle>)]) -> Vec<Triangle> {
+    if holes.len() > MAX_HOLES || !may_have_portals(world) {
+        return Vec::new();
+    }
+    let open = holes.iter().filter(|(object, hole)| is_opening(world, *object, hole));
+    open.flat_map(|(_, hole)| hole.iter().copied()).collect()
+}
+
+fn may_have_portals(world: &World) -> bool {
+    world.distant.has_dome() && !world.has_volumes
 }
