@@ -1,33 +1,22 @@
 //! From the errors of a picture's blocks to those of background and sources.
 
+use crate::change::{Change, Covariance, OWNERS, Owner};
 use crate::field::{Field, FieldPixel};
-use crate::normal;
+use crate::noise::pixel_variances;
+use crate::report::Source;
 use crate::survey::parts;
-use std::collections::BTreeMap;
+use rayon::prelude::*;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use sunpeak_core::Result;
 use sunpeak_scene::BlockErrors;
 
-/// Standard errors of what the ratings are made of. They are independent: blocks are.
+/// Standard errors of what the ratings are made of, each independent of the others.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SamplingError {
-    /// Illuminance at the eye that is not from sources [lx].
+    /// Illuminance at the eye from where no source is near [lx].
     pub background_lux: f64,
-    /// Luminance times solid angle of each source [cd sr m⁻²]; 0 for exact ones.
-    pub source_flux: Vec<f64>,
-    /// Where sources have pixels that may be theirs or not.
-    pub edges: Vec<Edge>,
-}
-
-/// Pixels near a threshold, which pass it or not by noise.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Edge {
-    /// Whose they are if they pass.
-    pub source: usize,
-    /// Whose they are otherwise; `None` for the background.
-    pub otherwise: Option<usize>,
-    pub threshold_cd_m2: f64,
-    /// Standard error of their solid angle [sr].
-    pub solid_angle_sr: f64,
+    /// Of sources and what is around them.
+    pub changes: Vec<Change>,
 }
 
 /// What makes a source.
@@ -38,159 +27,175 @@ pub(crate) struct Limits {
     pub peak_cd_m2: Option<f64>,
 }
 
+/// Whose a pixel may be: a source that was split off, and one that was not.
+type Owners = [Option<usize>; OWNERS];
+
 impl Limits {
-    /// Is a source of such pixels one that was split off?
-    fn is_peak(&self, pixels: &[FieldPixel]) -> bool {
-        self.peak_cd_m2.is_some_and(|peak| pixels.first().is_some_and(|pixel| pixel.luminance_cd_m2 > peak))
+    /// Place among a pixel's owners of a source of such pixels.
+    fn kind(&self, pixels: &[FieldPixel]) -> usize {
+        let is_above = |peak: f64| pixels.first().is_some_and(|pixel| pixel.luminance_cd_m2 > peak);
+        usize::from(!self.peak_cd_m2.is_some_and(is_above))
+    }
+
+    /// By luminance, whose a pixel is. What was split off with nothing around it stays what it is.
+    fn owners(&self, owners: Owners, is_of: Option<usize>) -> Vec<Owner> {
+        let (threshold, all) = (self.threshold_cd_m2, f64::INFINITY);
+        let peak = self.peak_cd_m2.unwrap_or(all).max(threshold);
+        let owner = |source, from, to| Owner { source, luminances_cd_m2: from..to };
+        match owners {
+            [Some(bright), Some(around)] => vec![owner(bright, peak, all), owner(around, threshold, peak)],
+            [None, Some(around)] => vec![owner(around, threshold, all)],
+            [Some(bright), None] if is_of == Some(bright) => vec![owner(bright, -all, all)],
+            _ => Vec::new(),
+        }
     }
 }
 
-/// What a block of pixels holds.
-#[derive(Clone, Copy, Default)]
-struct Block {
-    flux: f64,
-    solid_angle_sr: f64,
-    projected_sr: f64,
-}
-
-/// Standard errors of background and sources, the latter in the order of their `pixels`; `None` if the picture does not know its own.
-///
-/// A block's variance is shared out in proportion to the light in it: pixels are independent, noise stands where light is, and the shares
-/// sum to the whole.
+/// Standard errors of background and sources, which are given with their pixels; `None` if the picture does not know its own.
 pub(crate) fn sampling_error(
     field: &Field,
     limits: &Limits,
-    pixels: &[&[FieldPixel]],
+    sources: &[(Source, Vec<FieldPixel>)],
 ) -> Result<Option<SamplingError>> {
     let errors = field.picture.block_errors.as_ref().filter(|errors| errors.fits(field.width, field.height));
     let Some(errors) = errors else { return Ok(None) };
-    let blocks = blocks(field, errors)?;
-    let mut shares = Shares { left: vec![1.0; blocks.len()], owners: BTreeMap::new() };
-    let take = |(source, pixels): (usize, &&[FieldPixel])| {
-        let taken =
-            shares.take(source, limits.is_peak(pixels), &blocks, flux_by_block(field, errors, pixels));
-        let error = |(block, share): (usize, f64)| {
-            share.sqrt() * errors.luminance_cd_m2[block] * blocks[block].solid_angle_sr
-        };
-        root_of_squares(taken.into_iter().map(error))
-    };
-    let source_flux = pixels.iter().enumerate().map(take).collect();
-    let background = blocks.iter().zip(&shares.left).zip(&errors.luminance_cd_m2);
-    Ok(Some(SamplingError {
-        background_lux: root_of_squares(
-            background.map(|((block, left), error)| left.sqrt() * error * block.projected_sr),
-        ),
-        source_flux,
-        edges: shares.edges(limits, |block, threshold| passing_variance(field, errors, block, threshold)),
-    }))
+    let map = Map::new(field, errors, limits, sources);
+    let near: Vec<BlockNoise> = map.blocks_near().into_par_iter().map(|block| map.noise(block)).collect();
+    let mut is_near = vec![false; errors.luminance_cd_m2.len()];
+    let mut background_lux2 = 0.0;
+    let mut sums = BTreeMap::<Owners, Covariance>::new();
+    for noise in near {
+        is_near[noise.block] = true;
+        background_lux2 += noise.background_lux2;
+        for (owners, covariance) in noise.sources {
+            sums.entry(owners).and_modify(|sum| sum.merge(&covariance)).or_insert(covariance);
+        }
+    }
+    let far = projected_solid_angles(field, errors)?.into_iter().zip(&errors.luminance_cd_m2).zip(is_near);
+    let far = far.filter(|(_, is_near)| !is_near);
+    background_lux2 += far.map(|((projected_sr, error), _)| (projected_sr * error).powi(2)).sum::<f64>();
+    let changes = sums.values().flat_map(Covariance::changes).collect();
+    Ok(Some(SamplingError { background_lux: background_lux2.sqrt(), changes }))
 }
 
-fn root_of_squares(values: impl Iterator<Item = f64>) -> f64 {
-    values.map(|value| value * value).sum::<f64>().sqrt()
+/// The variances of a block.
+struct BlockNoise {
+    block: usize,
+    sources: BTreeMap<Owners, Covariance>,
+    /// Of the illuminance from pixels that are nobody's [lx²].
+    background_lux2: f64,
 }
 
-/// Who gets how much of the error of each block.
-struct Shares {
-    /// What is left to the background.
-    left: Vec<f64>,
-    /// By block, and whether it is one of those that were split off: the largest share of a source so far, and the source.
-    owners: BTreeMap<(usize, bool), (f64, usize)>,
+/// Where sources are.
+struct Map<'a> {
+    field: &'a Field<'a>,
+    errors: &'a BlockErrors,
+    limits: &'a Limits,
+    sources: &'a [(Source, Vec<FieldPixel>)],
+    /// Place of each source among a pixel's owners.
+    kinds: Vec<usize>,
+    /// By block that holds some of a source.
+    blocks: BTreeMap<usize, SourcesHere>,
 }
 
-impl Shares {
-    /// Give a source its shares: blocks and parts of their light.
-    fn take(
-        &mut self,
-        source: usize,
-        is_peak: bool,
-        blocks: &[Block],
-        flux: BTreeMap<usize, f64>,
-    ) -> Vec<(usize, f64)> {
-        let mut taken = Vec::new();
-        for (block, flux) in flux {
-            let share = (flux / blocks[block].flux).min(1.0);
-            self.left[block] = (self.left[block] - share).max(0.0);
-            let owner = self.owners.entry((block, is_peak)).or_insert((share, source));
-            if share > owner.0 {
-                *owner = (share, source);
+/// What a block holds of sources.
+#[derive(Default)]
+struct SourcesHere {
+    /// Pixels, and whose they are.
+    pixels: HashMap<usize, usize>,
+    /// Of each kind the source with most light, and that light.
+    most: [Option<(f64, usize)>; OWNERS],
+}
+
+impl<'a> Map<'a> {
+    fn new(
+        field: &'a Field,
+        errors: &'a BlockErrors,
+        limits: &'a Limits,
+        sources: &'a [(Source, Vec<FieldPixel>)],
+    ) -> Self {
+        let kinds = sources.iter().map(|(_, pixels)| limits.kind(pixels)).collect();
+        let mut map = Self { field, errors, limits, sources, kinds, blocks: BTreeMap::new() };
+        for (source, (_, pixels)) in sources.iter().enumerate() {
+            let mut light = BTreeMap::<usize, f64>::new();
+            for pixel in pixels {
+                let block = errors.block(pixel.index % field.width, pixel.index / field.width);
+                map.blocks.entry(block).or_default().pixels.insert(pixel.index, source);
+                *light.entry(block).or_default() += pixel.luminance_cd_m2 * pixel.solid_angle_sr;
             }
-            taken.push((block, share));
+            for (block, light) in light {
+                let most = &mut map.blocks.entry(block).or_default().most[map.kinds[source]];
+                if most.is_none_or(|(most, _)| light > most) {
+                    *most = Some((light, source));
+                }
+            }
         }
-        taken
+        map
     }
 
-    /// Pixels at the threshold belong to the source with most light in their block, or to the background; those at the peak luminance to
-    /// what was split off there, or to the source around it.
-    fn edges(&self, limits: &Limits, passing_variance: impl Fn(usize, f64) -> f64) -> Vec<Edge> {
-        let mut variance = BTreeMap::<(usize, Option<usize>), f64>::new();
-        for (&(block, is_peak), &(_, source)) in &self.owners {
-            let around = self.owners.get(&(block, false)).map(|&(_, source)| source);
-            let (edge, threshold) = match (is_peak, around, limits.peak_cd_m2) {
-                (false, _, _) => ((source, None), limits.threshold_cd_m2),
-                (true, Some(around), Some(peak)) => ((source, Some(around)), peak),
-                // Alone it stays what it is, split off or not.
-                _ => continue,
-            };
-            *variance.entry(edge).or_default() += passing_variance(block, threshold);
+    /// Blocks that hold some of a source, or touch one that does.
+    fn blocks_near(&self) -> Vec<usize> {
+        let all: BTreeSet<usize> = self.blocks.keys().flat_map(|&block| self.around(block)).collect();
+        all.into_iter().collect()
+    }
+
+    /// A block and those that touch it.
+    fn around(&self, block: usize) -> impl Iterator<Item = usize> {
+        let columns = self.errors.columns;
+        let rows = self.errors.luminance_cd_m2.len() / columns;
+        let near = |i: usize, end: usize| i.saturating_sub(1)..(i + 2).min(end);
+        near(block / columns, rows)
+            .flat_map(move |row| near(block % columns, columns).map(move |column| row * columns + column))
+    }
+
+    /// Whose the pixels of a block would be: of each kind the source with most light in it, or else in those around it.
+    fn owners(&self, block: usize) -> Owners {
+        let most = |block: usize, kind: usize| self.blocks.get(&block).and_then(|here| here.most[kind]);
+        std::array::from_fn(|kind| {
+            let near =
+                || self.around(block).filter_map(|near| most(near, kind)).max_by(|a, b| a.0.total_cmp(&b.0));
+            most(block, kind).or_else(near).map(|(_, source)| source)
+        })
+    }
+
+    /// What the pixels of a block bring.
+    fn noise(&self, block: usize) -> BlockNoise {
+        let mut noise = BlockNoise { block, sources: BTreeMap::new(), background_lux2: 0.0 };
+        let (here, owners_here) = (self.blocks.get(&block), self.owners(block));
+        let variances = pixel_variances(self.field, self.errors, block);
+        let pixels = self.errors.pixels(block, self.field.width, self.field.height).zip(variances);
+        for (index, variance) in pixels.filter(|(_, variance)| *variance > 0.0) {
+            let Some(pixel) = self.field.pixel(index) else { continue };
+            let is_of = here.and_then(|here| here.pixels.get(&index)).copied();
+            let mut owners = owners_here;
+            if let Some(source) = is_of {
+                owners[self.kinds[source]] = Some(source);
+            }
+            let by_luminance = self.limits.owners(owners, is_of);
+            if by_luminance.is_empty() {
+                noise.background_lux2 += variance * (pixel.solid_angle_sr * pixel.cosine).powi(2);
+            } else {
+                let new = || Covariance::new(&by_luminance, |source| self.sources[source].0.direction);
+                noise.sources.entry(owners).or_insert_with(new).add(&pixel, variance, &by_luminance);
+            }
         }
-        let edge = |((source, otherwise), variance): ((usize, Option<usize>), f64)| {
-            let peak = limits.peak_cd_m2.filter(|_| otherwise.is_some());
-            let threshold_cd_m2 = peak.unwrap_or(limits.threshold_cd_m2);
-            Edge { source, otherwise, threshold_cd_m2, solid_angle_sr: variance.sqrt() }
-        };
-        variance.into_iter().map(edge).filter(|edge| edge.solid_angle_sr > 0.0).collect()
+        noise
     }
 }
 
-/// How much of a source's light each block holds.
-fn flux_by_block(field: &Field, errors: &BlockErrors, pixels: &[FieldPixel]) -> BTreeMap<usize, f64> {
-    let mut flux = BTreeMap::new();
-    for pixel in pixels {
-        let block = errors.block(pixel.index % field.width, pixel.index / field.width);
-        *flux.entry(block).or_default() += pixel.luminance_cd_m2 * pixel.solid_angle_sr;
-    }
-    flux
-}
-
-/// Variance of the solid angle of a block's pixels that pass the threshold [sr²].
-///
-/// Pixels are independent, so the mean of a block is known better than they are; and noise stands where light is, so that the variance of
-/// a pixel is in proportion to its luminance. A dim pixel beside a sun does not become a source by the sun's noise.
-fn passing_variance(field: &Field, errors: &BlockErrors, block: usize, threshold: f64) -> f64 {
-    let indices: Vec<usize> = errors.pixels(block, field.width, field.height).collect();
-    let light: f64 = indices.iter().map(|&index| field.luminance(index)).sum();
-    let variance_by_light = (errors.luminance_cd_m2[block] * indices.len() as f64).powi(2) / light;
-    if variance_by_light.is_nan() || variance_by_light <= 0.0 {
-        return 0.0;
-    }
-    let variance = |pixel: FieldPixel| {
-        let error = (variance_by_light * pixel.luminance_cd_m2).sqrt();
-        let passes = normal::cumulative((pixel.luminance_cd_m2 - threshold) / error);
-        pixel.solid_angle_sr.powi(2) * passes * (1.0 - passes)
-    };
-    let lit = indices.into_iter().filter_map(|index| field.pixel(index)).filter(|p| p.luminance_cd_m2 > 0.0);
-    lit.map(variance).sum()
-}
-
-fn blocks(field: &Field, errors: &BlockErrors) -> Result<Vec<Block>> {
+/// Of each block, what it weighs in the illuminance at the eye [sr].
+fn projected_solid_angles(field: &Field, errors: &BlockErrors) -> Result<Vec<f64>> {
     let found = parts(field, |range| {
-        let mut blocks = BTreeMap::<usize, Block>::new();
+        let mut blocks = BTreeMap::<usize, f64>::new();
         for (index, luminance) in field.luminances(range) {
             if let Some(pixel) = field.with_luminance(index, luminance) {
-                let place = errors.block(index % field.width, index / field.width);
-                let block = blocks.entry(place).or_default();
-                block.flux += luminance * pixel.solid_angle_sr;
-                block.solid_angle_sr += pixel.solid_angle_sr;
-                block.projected_sr += pixel.solid_angle_sr * pixel.cosine;
+                let block = errors.block(index % field.width, index / field.width);
+                *blocks.entry(block).or_default() += pixel.solid_angle_sr * pixel.cosine;
             }
         }
         Ok(blocks)
     })?;
-    let mut all = vec![Block::default(); errors.luminance_cd_m2.len()];
-    for (index, block) in found.into_iter().flatten() {
-        all[index].flux += block.flux;
-        all[index].solid_angle_sr += block.solid_angle_sr;
-        all[index].projected_sr += block.projected_sr;
-    }
+    let mut all = vec![0.0; errors.luminance_cd_m2.len()];
+    found.into_iter().flatten().for_each(|(block, projected_sr)| all[block] += projected_sr);
     Ok(all)
 }

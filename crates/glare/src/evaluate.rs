@@ -40,9 +40,10 @@ pub fn evaluate_with_pixels(
     let seen = seen(search.sources(), &survey, &suns, options);
 
     let limits = Limits { threshold_cd_m2: search.threshold_cd_m2, peak_cd_m2: options.peak_cd_m2 };
-    let error = sampling_error(&field, &limits, &pixels)?;
-    let sampling = uncertainty::sampling(&seen, error.as_ref(), options);
-    let input = uncertainty::input(&seen, &Head { field: &field, options }, options);
+    let error = sampling_error(&field, &limits, &search.found)?;
+    let head = Head { field: &field, options };
+    let sampling = uncertainty::sampling(&seen, error.as_ref(), &head);
+    let input = uncertainty::input(&seen, &head, options);
     let terms = options.dgp_fit.terms(seen.ev_lux, seen.contrast_sum());
     let dgp = terms.dgp() * options.low_light_factor(seen.ev_lux);
     let [of_sampling, of_input] = [&sampling, &input].map(|intervals| dgp_interval(dgp, intervals.as_ref()));

@@ -167,3 +167,30 @@ fn usable_view(picture: &Picture) -> Result<&View> {
 fn luminance_of(value: [f32; 3]) -> f64 {
     luminance_cd_m2(Rgb::from(value.map(f64::from)))
 }
+
+#[cfg(test)]
+pub(crate) mod testing {
+    use super::*;
+
+    /// A square fisheye picture with luminances [cd/m²] by column and row.
+    pub(crate) fn picture(size: usize, luminance: impl Fn(usize, usize) -> f64) -> Picture {
+        let view = View {
+            kind: ViewKind::AngularFisheye,
+            position: Vec3::ZERO,
+            direction: Vec3::Y,
+            up: Vec3::Z,
+            horizontal_deg: 180.0,
+            vertical_deg: 180.0,
+            fore: 0.0,
+            aft: 0.0,
+            shift: 0.0,
+            lift: 0.0,
+        };
+        let value = |index: usize| [(luminance(index % size, index / size) / 179.0) as f32; 3];
+        Picture {
+            pixels: (0..size * size).map(value).collect(),
+            view: Some(view),
+            ..Picture::new(size, size)
+        }
+    }
+}

@@ -10,6 +10,7 @@
 
 mod behind;
 mod blocks;
+mod change;
 mod checks;
 mod class;
 mod cluster;
@@ -19,6 +20,7 @@ mod evaluate;
 mod exact;
 mod field;
 pub(crate) mod metrics;
+mod noise;
 mod normal;
 mod options;
 mod position_index;

@@ -1,5 +1,26 @@
 //! The normal distribution.
 
+/// The part of a standard normal distribution between two limits: what it holds of 1, x and x².
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Part {
+    pub probability: f64,
+    pub first: f64,
+    pub second: f64,
+}
+
+impl Part {
+    pub fn between(from: f64, to: f64) -> Self {
+        let density = |x: f64| (-0.5 * x * x).exp() / (2.0 * std::f64::consts::PI).sqrt();
+        let times_density = |x: f64| if x.is_finite() { x * density(x) } else { 0.0 };
+        let probability = cumulative(to) - cumulative(from);
+        Self {
+            probability,
+            first: density(from) - density(to),
+            second: probability + times_density(from) - times_density(to),
+        }
+    }
+}
+
 /// Probability [-] that a standard normal number is below `x`.
 pub(crate) fn cumulative(x: f64) -> f64 {
     0.5 * complementary_error_function(-x / std::f64::consts::SQRT_2)
@@ -25,7 +46,7 @@ fn complementary_error_function(x: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::cumulative;
+    use super::{Part, cumulative};
 
     /// Tables of the normal distribution.
     #[test]
@@ -39,6 +60,22 @@ mod tests {
             (f64::INFINITY, 1.0),
         ] {
             assert!((cumulative(x) - p).abs() < 1e-12, "{x}: {}", cumulative(x));
+        }
+    }
+
+    /// Between -1 and 1, above 0, and all of it.
+    #[test]
+    fn parts_hold_what_tables_say() {
+        let infinity = f64::INFINITY;
+        for (from, to, expected) in [
+            (-1.0, 1.0, [0.682689492137086, 0.0, 0.198748043098799]),
+            (0.0, infinity, [0.5, 0.398942280401433, 0.5]),
+            (-infinity, infinity, [1.0, 0.0, 1.0]),
+        ] {
+            let part = Part::between(from, to);
+            for (found, expected) in [part.probability, part.first, part.second].into_iter().zip(expected) {
+                assert!((found - expected).abs() < 1e-12, "{part:?}");
+            }
         }
     }
 }

@@ -1,9 +1,10 @@
 //! How far off the numbers may be: by sampling, and by what goes in.
 //!
-//! A scene is background, sources and common scale. Each of them is moved by its 95 % half-width to both sides; what that does to a
-//! rating is added up in squares, upwards and downwards apart.
+//! A scene is background, sources and common scale. Each of them is moved by its 95 % half-width to both sides, sources together with what
+//! is around them; what that does to a rating is added up in squares, upwards and downwards apart.
 
-use crate::blocks::{Edge, SamplingError};
+use crate::blocks::SamplingError;
+use crate::change::{Change, SourceChange};
 use crate::detect::Head;
 use crate::metrics::{Metrics, Seen};
 use crate::options::{GlareOptions, Tolerances};
@@ -21,43 +22,39 @@ pub type Intervals = Vec<(&'static str, [f64; 2])>;
 type Move = [Seen; 2];
 
 /// Interval of each rating that the picture's statistical error leaves.
-pub(crate) fn sampling(
-    seen: &Seen,
-    error: Option<&SamplingError>,
-    options: &GlareOptions,
-) -> Option<Intervals> {
-    let mut moves = Vec::new();
+pub(crate) fn sampling(seen: &Seen, error: Option<&SamplingError>, head: &Head) -> Option<Intervals> {
+    let mut spread = Spread::around(seen, head.options);
     if let Some(error) = error {
-        moves.push([-1.0, 1.0].map(|side| with_background(seen, side * CONFIDENCE * error.background_lux)));
-        for (i, &flux) in error.source_flux.iter().enumerate().filter(|(_, flux)| **flux > 0.0) {
-            moves.push([-1.0, 1.0].map(|side| with_source(seen, i, side * CONFIDENCE * flux)));
-        }
-        for edge in &error.edges {
-            moves
-                .push([-1.0, 1.0].map(|side| with_edge(seen, edge, side * CONFIDENCE * edge.solid_angle_sr)));
+        spread.add(both_ways(|step| with_background(seen, step * error.background_lux)));
+        for change in &error.changes {
+            spread.add(both_ways(|step| with_change(seen, head, change, step)));
         }
     }
-    if options.relative_error > 0.0 {
-        let step = CONFIDENCE * options.relative_error;
-        moves.push([-1.0, 1.0].map(|side| scaled(seen, 1.0 + side * step, |_| true)));
+    if head.options.relative_error > 0.0 {
+        spread.add(both_ways(|step| scaled(seen, 1.0 + step * head.options.relative_error, |_| true)));
     }
-    (!moves.is_empty()).then(|| spread(seen, &moves, options))
+    spread.intervals()
+}
+
+/// What so many standard deviations to both sides do.
+fn both_ways(moved: impl Fn(f64) -> Seen) -> Move {
+    [-CONFIDENCE, CONFIDENCE].map(moved)
 }
 
 /// Interval of each rating that the stated tolerances leave.
 pub(crate) fn input(seen: &Seen, head: &Head, options: &GlareOptions) -> Option<Intervals> {
     let Tolerances { through, sky, position_deg } = options.tolerances;
-    let mut moves = Vec::new();
+    let mut spread = Spread::around(seen, options);
     if through > 0.0 {
-        moves.push([-1.0, 1.0].map(|side| scaled(seen, 1.0 + side * through, |source| source.exact)));
+        spread.add([-1.0, 1.0].map(|side| scaled(seen, 1.0 + side * through, |source| source.exact)));
     }
     if sky > 0.0 {
-        moves.push([-1.0, 1.0].map(|side| scaled(seen, 1.0 + side * sky, |_| true)));
+        spread.add([-1.0, 1.0].map(|side| scaled(seen, 1.0 + side * sky, |_| true)));
     }
     if position_deg > 0.0 {
-        moves.push([-1.0, 1.0].map(|side| turned(seen, head, side * position_deg.to_radians())));
+        spread.add([-1.0, 1.0].map(|side| turned(seen, head, side * position_deg.to_radians())));
     }
-    (!moves.is_empty()).then(|| spread(seen, &moves, options))
+    spread.intervals()
 }
 
 /// All ratings of a scene.
@@ -70,23 +67,40 @@ fn values(seen: &Seen, options: &GlareOptions) -> Vec<(&'static str, Option<f64>
     first.into_iter().chain(Metrics::of(seen).values()).collect()
 }
 
-fn spread(seen: &Seen, moves: &[Move], options: &GlareOptions) -> Intervals {
-    let middle = values(seen, options);
-    let mut squares = vec![[0.0; 2]; middle.len()];
-    for ends in moves {
-        let [one, other] = ends.each_ref().map(|end| values(end, options));
-        for (i, square) in squares.iter_mut().enumerate() {
-            let differences = [one[i].1, other[i].1].map(|end| Some(end? - middle[i].1?));
-            for difference in differences.into_iter().flatten().filter(|d| d.is_finite()) {
-                let side = usize::from(difference > 0.0);
-                square[side] += difference * difference;
+/// What moves have done to each rating.
+struct Spread<'a> {
+    options: &'a GlareOptions,
+    middle: Vec<(&'static str, Option<f64>)>,
+    /// Sums of squares, downwards and upwards.
+    squares: Vec<[f64; 2]>,
+    has_moved: bool,
+}
+
+impl<'a> Spread<'a> {
+    fn around(seen: &Seen, options: &'a GlareOptions) -> Self {
+        let middle = values(seen, options);
+        Self { options, squares: vec![[0.0; 2]; middle.len()], middle, has_moved: false }
+    }
+
+    fn add(&mut self, ends: Move) {
+        self.has_moved = true;
+        for end in ends.map(|end| values(&end, self.options)) {
+            for ((square, (_, middle)), (_, end)) in self.squares.iter_mut().zip(&self.middle).zip(end) {
+                let difference = end.zip(*middle).map(|(end, middle)| end - middle);
+                if let Some(difference) = difference.filter(|d| d.is_finite()) {
+                    square[usize::from(difference > 0.0)] += difference * difference;
+                }
             }
         }
     }
-    let interval = |(&(name, value), [below, above]): (&(&'static str, Option<f64>), [f64; 2])| {
-        value.map(|value| (name, [value - below.sqrt(), value + above.sqrt()]))
-    };
-    middle.iter().zip(squares).filter_map(interval).collect()
+
+    /// `None` if nothing has moved.
+    fn intervals(self) -> Option<Intervals> {
+        let interval = |((name, value), [below, above]): ((_, Option<f64>), [f64; 2])| {
+            value.map(|value| (name, [value - below.sqrt(), value + above.sqrt()]))
+        };
+        self.has_moved.then(|| self.middle.into_iter().zip(self.squares).filter_map(interval).collect())
+    }
 }
 
 /// The background gives so much more light at the eye [lx].
@@ -102,40 +116,47 @@ fn with_background(seen: &Seen, more_lux: f64) -> Seen {
     }
 }
 
-/// A source has so much more luminance times solid angle.
-fn with_source(seen: &Seen, source: usize, more_flux: f64) -> Seen {
-    let flux = seen.sources[source].luminance_cd_m2 * seen.sources[source].solid_angle_sr;
-    let scale = (1.0 + more_flux / flux).max(0.0);
-    let mut place = 0;
-    scaled_where(seen, scale, 1.0, |_| {
-        place += 1;
-        place == source + 1
-    })
-}
-
-/// A source has so much more solid angle of pixels at its threshold, taken from the background or from the source around it.
-fn with_edge(seen: &Seen, edge: &Edge, more_sr: f64) -> Seen {
-    /// No source loses more than this share of its solid angle.
-    const MOST: f64 = 0.9;
-    let mut moved = seen.clone();
-    let least = -MOST * seen.sources[edge.source].solid_angle_sr;
-    let most = edge.otherwise.map_or(f64::INFINITY, |other| MOST * seen.sources[other].solid_angle_sr);
-    let more = more_sr.max(least).min(most);
-    let gained = with_pixels(&mut moved.sources[edge.source], more, edge.threshold_cd_m2);
-    let lost =
-        edge.otherwise.map(|other| with_pixels(&mut moved.sources[other], -more, edge.threshold_cd_m2));
-    moved.ev_sources_lux += gained + lost.unwrap_or(0.0);
+/// Sources and what is around them change by so many standard deviations.
+fn with_change(seen: &Seen, head: &Head, change: &Change, step: f64) -> Seen {
+    let (mut moved, step) = (seen.clone(), change.possible(step));
+    for &(source, change) in &change.sources {
+        change_source(&mut moved.sources[source], head, change, step);
+    }
+    let sum = |of: fn(&Source) -> f64| -> [f64; 2] {
+        [seen, &moved].map(|seen| change.sources.iter().map(|&(source, _)| of(&seen.sources[source])).sum())
+    };
+    let [lux_before, lux] = sum(|source| source.illuminance_lux);
+    let [sr_before, sr] = sum(|source| source.solid_angle_sr);
+    let [flux_before, flux] = sum(|source| source.luminance_cd_m2 * source.solid_angle_sr);
+    moved.ev_sources_lux += lux - lux_before;
+    moved.ev_lux = (seen.ev_lux + step * change.illuminance_lux).max(0.0);
+    moved.mean_luminance_cd_m2 = (seen.mean_luminance_cd_m2 + step * change.flux / (2.0 * PI)).max(0.0);
+    let of_pixels = seen.sources.iter().filter(|source| !source.exact);
+    let rest = 2.0 * PI - of_pixels.map(|source| source.solid_angle_sr).sum::<f64>();
+    moved.surround_luminance_cd_m2 = seen.surround_luminance_cd_m2.map(|luminance| {
+        let flux = luminance * rest + step * change.flux - (flux - flux_before);
+        (flux / (rest - (sr - sr_before))).max(0.0)
+    });
     moved
 }
 
-/// Give a source so much more solid angle of a luminance; how much more illuminance that is [lx].
-fn with_pixels(source: &mut Source, more_sr: f64, luminance_cd_m2: f64) -> f64 {
-    let flux = (source.luminance_cd_m2 * source.solid_angle_sr + more_sr * luminance_cd_m2).max(0.0);
-    let illuminance = more_sr * luminance_cd_m2 * source.angle_to_sight_rad.cos();
-    source.solid_angle_sr += more_sr;
+fn change_source(source: &mut Source, head: &Head, change: SourceChange, step: f64) {
+    /// No source loses more than this share of its solid angle or of its light.
+    const MOST: f64 = 0.9;
+    let before = source.luminance_cd_m2 * source.solid_angle_sr;
+    let left = |value: f64, change: f64| (value + step * change).max((1.0 - MOST) * value);
+    let flux = left(before, change.flux);
+    source.solid_angle_sr = left(source.solid_angle_sr, change.solid_angle_sr);
     source.luminance_cd_m2 = flux / source.solid_angle_sr;
-    source.illuminance_lux += illuminance;
-    illuminance
+    let aside = step * change.moment;
+    source.illuminance_lux = (source.illuminance_lux * flux / before + aside.dot(head.field.sight)).max(0.0);
+    move_centre(source, head, aside / before);
+}
+
+/// The centre of a source moves by a small vector.
+fn move_centre(source: &mut Source, head: &Head, by: Vec3) {
+    let direction = (source.direction + by).normalize_or(source.direction);
+    *source = head.placed(Source { direction, ..*source });
 }
 
 /// Sources that are chosen are so many times as bright; the background too if all are.
