@@ -50,7 +50,7 @@ def test_the_noise_of_a_smeared_sun_is_not_that_of_its_surroundings(tmp_path: Pa
     found = np.std([report.dgp for report in reports], ddof=1)
     stated = np.mean([half_width(report, "dgp") / 1.96 for report in reports])
     assert max(report.sources[0].luminance_cd_m2 for report in reports) > 50_000
-    assert 0.3 < found / stated < 1.6, (found, stated)
+    assert 0.5 < found / stated < 1.6, (found, stated)
 
 
 @pytest.mark.parametrize(("direct_normal_w_m2", "right"), [(54.5, "imperceptible"), (58.0, "perceptible")])
