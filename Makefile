@@ -61,8 +61,8 @@ bench: build ## Benchmarks: name, ours, theirs, ratio for rays, sampling, throug
 	$(BIN)/python benches/large_scene.py
 	$(BIN)/python benches/glare_picture.py
 
-bench-transport: build ## CPU time of rpict and of ours to the same error in ten rooms (an hour), kept in benches/runs
-	cd benches && $(BIN)/python -m transport --out runs/$$(date +%F)
+bench-transport: build ## CPU time of rpict and of ours to the same error in ten rooms (hours), kept in benches/runs
+	cd benches && $(BIN)/python -m transport --out runs/$$(date +%F)-$$(uname -m)-$$(nproc)-cores
 
 fuzz: ## Readers against hostile input, a minute each (needs a nightly compiler and cargo-fuzz)
 	for target in scene expression view picture bsdf; do \
