@@ -71,6 +71,12 @@ impl<'a> Field<'a> {
         Ok(Self { view, picture, camera, sight, width, height, changed: BTreeMap::new() })
     }
 
+    /// Does its centre lie in front of the eye?
+    pub fn is_ahead(&self, index: usize) -> bool {
+        let (column, row) = (index % self.width, index / self.width);
+        self.camera.pixel_ahead(column, row, self.width, self.height).is_some()
+    }
+
     /// The pixel, if its centre lies in front of the eye.
     pub fn pixel(&self, index: usize) -> Option<FieldPixel> {
         self.with_luminance(index, self.luminance(index))

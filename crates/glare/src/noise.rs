@@ -30,13 +30,13 @@ fn largest_variance(field: &Field, index: usize) -> f64 {
     let around = |i: usize, end: usize| i.saturating_sub(1)..(i + 2).min(end);
     let near = around(row, field.height)
         .flat_map(|row| around(column, field.width).map(move |column| row * field.width + column))
-        .filter(|&near| near != index);
+        .filter(|&near| near != index && (field.luminance(near) > 0.0 || field.is_ahead(near)));
     let (least, largest) = near.fold((f64::INFINITY, 0.0), |(least, largest): (f64, f64), near| {
         let luminance = field.luminance(near);
         (least.min(luminance), largest.max(luminance))
     });
     let luminance = field.luminance(index);
-    // A picture of one pixel has no neighbours.
+    // A picture of one pixel has no neighbours. (What lies outside of a fisheye's circle is none.)
     if least.is_finite() { ((largest - luminance) * (luminance - least)).abs() } else { 0.0 }
 }
 

@@ -45,20 +45,9 @@ fn office() -> Option<Room> {
         println!("skipped: no furnished office in {} (set SUNPEAK_SHARED)", folder.display());
         return None;
     };
-    let parts = [
-        "materials.mat",
-        "walls.rad",
-        "ceiling.rad",
-        "floor.rad",
-        "windowframe.rad",
-        "extwalls.rad",
-        "ground.rad",
-    ];
-    let mut sources: Vec<_> = parts
-        .iter()
-        .chain(&["desks.rad"])
-        .map(|part| Source::File(folder.join("Objects").join(part)))
-        .collect();
+    let parts = ["walls", "ceiling", "floor", "windowframe", "extwalls", "ground", "desks"];
+    let mut sources = vec![Source::File(folder.join("Objects/materials.mat"))];
+    sources.extend(parts.map(|part| Source::File(folder.join(format!("Objects/{part}.rad")))));
     sources.push(Source::File(folder.join("Resources/ec60.rad")));
     sources.push(Source::Text { text: OUTSIDE.into(), name: "outside.rad".into(), directory: ".".into() });
     let options = LoadOptions { search_path: vec![folder], ..Default::default() };
@@ -143,7 +132,9 @@ fn report(rooms: &[Room]) {
     println!("\npictures on one thread [M/s]; theirs: the bare hierarchy on the same rays");
     println!("{:<32} {:>10} {:>12} {:>8}", "name", "ours", "theirs", "ratio");
     for room in rooms {
+        let before = room.world.rays_traced();
         let rays = room.world.recorded_rays(|| room.picture(1));
+        assert_eq!(rays.len() as u64, room.world.rays_traced() - before, "all rays are recorded");
         let mut rounds = [(); 7].map(|()| {
             let bare = time(&mut || {
                 black_box(room.world.trace_again(&rays));

@@ -24,8 +24,19 @@ const LEAST_SHARE: f64 = 0.6;
 /// Panes that a probe passes.
 const MAX_PANES: usize = 8;
 
-/// So near to the plane of a hole, over its size, a surface is in it.
-const IN_A_HOLE: f64 = 1e-3;
+/// Outside of a window at least this share of the far field's light comes through, straight and by the same panes. (Terrain hides the lower
+/// half, whose share is large where the sun shines on the ground.)
+const LEAST_SHARE_OUTSIDE: f64 = 0.2;
+
+/// Inside of a window is where so much less of it comes.
+const INSIDE_TO_OUTSIDE: f64 = 0.5;
+
+/// Before a hole stands something if most rays meet it within so much of the hole's size (the edge of a square as large): what fills it, a
+/// panel set back, the floor over an excavation.
+const NEAR_A_HOLE: f64 = 0.2;
+
+/// Rays that look for that start so far behind the hole, over its size, that they see what lies in its plane.
+const BEHIND_A_HOLE: f64 = 1e-3;
 
 /// The far field behind one side of a shade, and what the shade gives off on the other.
 #[derive(Debug)]
@@ -89,7 +100,10 @@ impl Backlights {
         if table.is_proxy() || table.is_reference_rule() {
             return None;
         }
-        let panes = probe(world, object, triangles, if at_front { -normal } else { normal })?;
+        let (share, panes) = probe(world, object, triangles, if at_front { -normal } else { normal });
+        if share < LEAST_SHARE {
+            return None;
+        }
         let from = From { shade, normal, at_front, panes };
         if let Some(index) = self.found.iter().position(|known| known.from == from) {
             return Some(index);
@@ -141,27 +155,28 @@ pub(crate) fn is_window(world: &World, object: u32, triangles: &[Triangle]) -> b
     !is_veiled(world, object, triangles, inside)
 }
 
-/// Is a hole of a wall an opening: the far field on one side, with nothing in the hole or before it, and a room on the other?
+/// Is a hole of a wall an opening: the far field on one side, and on the other a room, with nothing between?
 pub(crate) fn is_opening(world: &World, object: u32, hole: &[Triangle]) -> bool {
     let Some((inside, panes)) = room_side(world, object, hole) else { return false };
-    let reach = IN_A_HOLE * hole.iter().map(Triangle::area).sum::<f64>().sqrt();
-    let is_filled = |i: &u64| {
-        let (point, _) = probing_ray(object, hole, inside, *i);
-        world.accel.closest(&Ray::new(point + inside * reach, -inside), 2.0 * reach).is_some()
+    let size = hole.iter().map(Triangle::area).sum::<f64>().sqrt();
+    let is_covered = |i: &u64| {
+        let (point, direction) = probing_ray(object, hole, inside, *i);
+        let ray = Ray::new(point - inside * (BEHIND_A_HOLE * size), direction);
+        world.accel.closest(&ray, NEAR_A_HOLE * size).is_some()
     };
     panes.is_empty()
-        && (0..PROBES).filter(is_filled).count() < PROBES as usize / 2
+        && (0..PROBES).filter(is_covered).count() < PROBES as usize / 2
         && !is_veiled(world, object, hole, inside)
 }
 
 /// To which side of a flat piece of glass, or of a hole, the room lies, if the far field is on the other; and the panes before that.
 fn room_side(world: &World, object: u32, triangles: &[Triangle]) -> Option<(Vec3, Vec<Pane>)> {
     let Facing::Flat(normal) = world.objects[object as usize].facing else { return None };
-    match [normal, -normal].map(|away| probe(world, object, triangles, away)) {
-        [Some(panes), None] => Some((-normal, panes)),
-        [None, Some(panes)] => Some((normal, panes)),
-        _ => None,
-    }
+    let [(front, before), (back, behind)] =
+        [normal, -normal].map(|away| probe(world, object, triangles, away));
+    let (inside, panes, outer, inner) =
+        if front > back { (-normal, before, front, back) } else { (normal, behind, back, front) };
+    (outer >= LEAST_SHARE_OUTSIDE && inner <= INSIDE_TO_OUTSIDE * outer).then_some((inside, panes))
 }
 
 /// Is there a shade or a pane close by on this side?
@@ -185,8 +200,8 @@ fn probing_ray(object: u32, triangles: &[Triangle], away: Vec3, i: u64) -> (Vec3
     (point, Frame::from_normal(away).to_world(warp::cosine_hemisphere(sampler.next_2d())))
 }
 
-/// Panes on the way to the far field from most points of a shade; `None` where most of the field does not come through.
-fn probe(world: &World, object: u32, triangles: &[Triangle], away: Vec3) -> Option<Vec<Pane>> {
+/// The panes by which most of the far field's light comes to a surface, and what share of it.
+fn probe(world: &World, object: u32, triangles: &[Triangle], away: Vec3) -> (f64, Vec<Pane>) {
     let mut whole = 0.0;
     let mut found: Vec<(f64, Vec<Pane>)> = Vec::new();
     for i in 0..PROBES {
@@ -199,8 +214,10 @@ fn probe(world: &World, object: u32, triangles: &[Triangle], away: Vec3) -> Opti
             None => found.push((light, panes)),
         }
     }
-    let (share, panes) = found.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
-    (whole > 0.0 && share >= LEAST_SHARE * whole).then_some(panes)
+    match found.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)) {
+        Some((light, panes)) if whole > 0.0 => (light / whole, panes),
+        _ => (0.0, Vec::new()),
+    }
 }
 
 /// The flat panes between a point and infinity; `None` if anything else is in the way.

@@ -43,17 +43,33 @@ impl Recorder {
     }
 }
 
-impl World {
-    /// All rays that are traced while `work` is done, shadow rays included.
-    pub fn recorded_rays(&self, work: impl FnOnce()) -> Vec<RecordedRay> {
-        let recorder = self.accel.recorder();
+/// Recording that ends with it, whatever happens.
+struct Recording<'r>(&'r Recorder);
+
+impl<'r> Recording<'r> {
+    fn begin(recorder: &'r Recorder) -> Self {
         recorder.is_on.store(true, Ordering::Relaxed);
+        Self(recorder)
+    }
+}
+
+impl Drop for Recording<'_> {
+    fn drop(&mut self) {
+        self.0.is_on.store(false, Ordering::Relaxed);
+    }
+}
+
+impl World {
+    /// All rays that are traced in this world while `work` is done, shadow rays included; for benchmarks.
+    #[doc(hidden)]
+    pub fn recorded_rays(&self, work: impl FnOnce()) -> Vec<RecordedRay> {
+        let on = Recording::begin(self.accel.recorder());
         work();
-        recorder.is_on.store(false, Ordering::Relaxed);
-        std::mem::take(&mut recorder.rays.lock().expect("no thread has failed"))
+        std::mem::take(&mut on.0.rays.lock().expect("no thread has failed"))
     }
 
     /// Search for the same surfaces again and do nothing with them; how many were found.
+    #[doc(hidden)]
     pub fn trace_again(&self, rays: &[RecordedRay]) -> usize {
         rays.iter().map(|recorded| again(&self.accel, recorded)).sum()
     }

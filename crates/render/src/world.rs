@@ -101,11 +101,6 @@ impl World {
         self.rule
     }
 
-    /// Distance from `origin` to the first surface in the unit vector's `direction`, visible or not.
-    pub fn distance(&self, origin: Vec3, direction: Vec3) -> Option<f64> {
-        self.accel.closest(&Ray::new(origin, direction), f64::INFINITY).map(|hit| hit.t)
-    }
-
     /// Rays that were traced for pictures, rays and sensors so far, shadow rays included.
     pub fn rays_traced(&self) -> u64 {
         self.rays.load(Ordering::Relaxed)

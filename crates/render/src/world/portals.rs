@@ -38,10 +38,15 @@ impl<'s> NamedPortals<'s> {
             named.name == surface.name
                 || modifiers(scene, surface).any(|id| scene.modifiers[id.0].name == named.name)
         };
-        let Some(named) = self.names.iter_mut().find(is_meant) else { return };
+        let mut meaning = self.names.iter_mut().filter(is_meant).peekable();
+        if meaning.peek().is_none() {
+            return;
+        }
         let pieces = pieces(&surface.shape);
-        named.surfaces += 1;
-        named.pieces += pieces.len();
+        for named in meaning {
+            named.surfaces += 1;
+            named.pieces += pieces.len();
+        }
         self.pieces.extend(pieces);
     }
 
@@ -60,7 +65,9 @@ impl<'s> NamedPortals<'s> {
                 return Err(Error::value(format!("portal '{name}': no surface or modifier has this name")));
             }
             if *pieces == 0 {
-                return Err(Error::value(format!("portal '{name}': it is no polygon and no mesh")));
+                return Err(Error::value(format!(
+                    "portal '{name}': it is no polygon or mesh that can be cut into triangles"
+                )));
             }
         }
         if self.pieces.len() > MAX_TRIANGLES {
