@@ -69,8 +69,8 @@ def render(
     The same seed and number of samples give the same picture on any number of `threads` (None: all cores).
     `max_bounces` limits diffuse bounces, as Radiance's `-ab`; None is no limit. `ambient` (three channels
     [W sr⁻¹ m⁻²]) stands for all diffuse light past them, as Radiance's `-av`. `peak` says which part of `aBSDF`
-    tables goes straight through, and `portals` names where else light comes in (see
-    `World.compile`); a `World` has chosen both already.
+    tables goes straight through, and `portals` names where else light comes in (see `World.compile`); a `World` has
+    chosen both already.
 
     `progress` shows a bar on standard error, or is a function that is called with the work done and in all. Ctrl-C
     stops the rendering (`KeyboardInterrupt`).

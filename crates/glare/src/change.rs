@@ -224,23 +224,12 @@ fn causes(parts: &[Part], deviation: f64) -> [[f64; CAUSES]; CAUSES] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use sunpeak_core::{Sampler, warp};
 
-    /// SplitMix64 in [0, 1), and normal numbers from it (Box and Muller).
-    struct Random(u64);
-
-    impl Random {
-        fn uniform(&mut self) -> f64 {
-            self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-            let mut z = self.0;
-            z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-        }
-
-        fn normal(&mut self) -> f64 {
-            let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
-            radius * (2.0 * std::f64::consts::PI * self.uniform()).cos()
-        }
+    /// A normal number (Box and Muller).
+    fn normal(random: &mut Sampler) -> f64 {
+        let [u, v] = random.next_2d();
+        (-2.0 * (1.0 - u).ln()).sqrt() * warp::circle(v)[0]
     }
 
     fn pixel(luminance_cd_m2: f64, right_rad: f64) -> FieldPixel {
@@ -311,10 +300,11 @@ mod tests {
         }
         let changes: Vec<Sums> = covariance.changes().iter().map(sums).collect();
 
-        let (draws, mut random) = (200_000, Random(3));
+        let (draws, mut random) = (200_000, Sampler::new(3, 0, 0));
         let mut draw = |_| {
-            let with_noise =
-                |(pixel, deviation): (&FieldPixel, f64)| pixel.luminance_cd_m2 + deviation * random.normal();
+            let with_noise = |(pixel, deviation): (&FieldPixel, f64)| {
+                pixel.luminance_cd_m2 + deviation * normal(&mut random)
+            };
             let luminances: Vec<f64> = pixels.iter().zip(deviations).map(with_noise).collect();
             drawn(&pixels, &luminances)
         };

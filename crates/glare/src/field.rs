@@ -177,22 +177,12 @@ fn luminance_of(value: [f32; 3]) -> f64 {
 #[cfg(test)]
 pub(crate) mod testing {
     use super::*;
+    use sunpeak_core::LUMINOUS_EFFICACY;
 
     /// A square fisheye picture with luminances [cd/m²] by column and row.
     pub(crate) fn picture(size: usize, luminance: impl Fn(usize, usize) -> f64) -> Picture {
-        let view = View {
-            kind: ViewKind::AngularFisheye,
-            position: Vec3::ZERO,
-            direction: Vec3::Y,
-            up: Vec3::Z,
-            horizontal_deg: 180.0,
-            vertical_deg: 180.0,
-            fore: 0.0,
-            aft: 0.0,
-            shift: 0.0,
-            lift: 0.0,
-        };
-        let value = |index: usize| [(luminance(index % size, index / size) / 179.0) as f32; 3];
+        let view = View::parse("-vta -vp 0 0 0 -vd 0 1 0 -vu 0 0 1 -vh 180 -vv 180").expect("a view");
+        let value = |index: usize| [(luminance(index % size, index / size) / LUMINOUS_EFFICACY) as f32; 3];
         Picture {
             pixels: (0..size * size).map(value).collect(),
             view: Some(view),

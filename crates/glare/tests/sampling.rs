@@ -1,9 +1,9 @@
 //! Do the intervals of sampling hold what they say? Pictures with known noise, drawn many times.
 #![allow(clippy::unwrap_used)] // a helper that fails fails the test
 
-use sunpeak_core::Vec3;
+use sunpeak_core::{Sampler, Vec3};
 use sunpeak_glare::{GlareOptions, GlareReport, evaluate};
-use sunpeak_scene::{BlockErrors, Camera, Picture, View, ViewKind};
+use sunpeak_scene::{BlockErrors, Camera, Picture, View};
 
 const SIZE: usize = 64;
 const EDGE: usize = 4;
@@ -16,32 +16,8 @@ const POINTS: usize = 8;
 
 const DRAWS: usize = 80;
 
-/// SplitMix64.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
-
 fn view() -> View {
-    View {
-        kind: ViewKind::AngularFisheye,
-        position: Vec3::ZERO,
-        direction: Vec3::Y,
-        up: Vec3::Z,
-        horizontal_deg: 180.0,
-        vertical_deg: 180.0,
-        fore: 0.0,
-        aft: 0.0,
-        shift: 0.0,
-        lift: 0.0,
-    }
+    View::parse("-vta -vp 0 0 0 -vd 0 1 0 -vu 0 0 1 -vh 180 -vv 180").unwrap()
 }
 
 fn towards(right_deg: f64, up_deg: f64) -> Vec3 {
@@ -80,12 +56,12 @@ impl Scene {
     }
 
     /// Pixels are means of some points each.
-    fn draw(&self, random: &mut Random) -> Vec<[f32; 3]> {
+    fn draw(&self, random: &mut Sampler) -> Vec<[f32; 3]> {
         let mut pixel = |points: &[f64; POINTS * POINTS]| {
             if points.iter().all(|value| *value == points[0]) {
                 return [(points[0] / 179.0) as f32; 3];
             }
-            let mut one = || points[(random.next() * points.len() as f64) as usize];
+            let mut one = || points[(random.next_1d() * points.len() as f64) as usize];
             let mean = (0..SAMPLES).map(|_| one()).sum::<f64>() / SAMPLES as f64;
             [(mean / 179.0) as f32; 3]
         };
@@ -93,7 +69,7 @@ impl Scene {
     }
 
     /// Reports of many pictures.
-    fn reports(&self, random: &mut Random) -> Vec<GlareReport> {
+    fn reports(&self, random: &mut Sampler) -> Vec<GlareReport> {
         let empty =
             Picture { view: Some(view()), block_errors: Some(self.errors()), ..Picture::new(SIZE, SIZE) };
         let mut one = |_| {
@@ -109,7 +85,7 @@ type Rating = fn(&GlareReport) -> f64;
 /// Of the pictures of many scenes, for DGP and Ev: the stated variance over the true one, and the share of 95 % intervals that hold the mean
 /// of the pictures.
 fn stated_over_true(scenes: impl Iterator<Item = Scene>) -> [(&'static str, f64, f64); 2] {
-    let mut random = Random(7);
+    let mut random = Sampler::new(7, 0, 0);
     let reports: Vec<Vec<GlareReport>> = scenes.map(|scene| scene.reports(&mut random)).collect();
     let ratings: [(_, Rating); 2] = [("dgp", |report| report.dgp), ("ev_lux", |report| report.ev_lux)];
     ratings.map(|(name, rating)| {

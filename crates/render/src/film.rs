@@ -2,7 +2,7 @@
 
 use crate::exact_sun::ExactSuns;
 use crate::integrator::{Integrator, Limits};
-use crate::passes::{Draw, Means, Reports, estimate_until};
+use crate::passes::{Draw, Means, estimate_until};
 use crate::shapes::Ray;
 use crate::stopping::Groups;
 use crate::{RenderOptions, World};
@@ -60,7 +60,7 @@ pub fn render_until(
     let means = estimate_until(
         width * height,
         options,
-        Reports { control, rays: &world.rays },
+        control,
         film.blocks(),
         |pixel, draw| film.sample(&integrator, pixel, draw),
         judge_means.as_ref().map(|judge| judge as _),

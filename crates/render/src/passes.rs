@@ -2,16 +2,14 @@
 //!
 //! Each item adds its own samples in order, so the result does not depend on threads.
 
-use crate::accel::rays_of_this_thread;
 use crate::stopping::{ErrorEstimate, Groups};
 use crate::{DEFAULT_SAMPLES, RenderOptions};
 use rayon::prelude::*;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use sunpeak_core::{Control, Error, Result, Rgb, Sampler};
 
-/// Items whose rays are counted together.
+/// Items that a thread takes at a time.
 const CHUNK: usize = 64;
 
 /// Chunks that a thread takes at once: so few that all threads end a pass at about the same time.
@@ -62,29 +60,21 @@ impl Draw {
 /// Says after a pass whether the means are good enough.
 pub(crate) type Judge<'a> = &'a dyn Fn(&Means) -> Result<bool>;
 
-/// Where finished work is reported.
-#[derive(Clone, Copy)]
-pub(crate) struct Reports<'a> {
-    pub control: &'a Control,
-    /// Counts rays.
-    pub rays: &'a AtomicU64,
-}
-
 /// Estimate `items` values, each by itself; `sample(item, draw)` is one estimate of one of them.
 pub(crate) fn estimate(
     items: usize,
     options: &RenderOptions,
-    reports: Reports,
+    control: &Control,
     sample: impl Fn(usize, Draw) -> Rgb + Sync,
 ) -> Result<Means> {
-    estimate_until(items, options, reports, Groups::each(items), sample, None)
+    estimate_until(items, options, control, Groups::each(items), sample, None)
 }
 
 /// The same for items in groups whose error counts together, until a judge is content too.
 pub(crate) fn estimate_until(
     items: usize,
     options: &RenderOptions,
-    reports: Reports,
+    control: &Control,
     groups: Groups,
     sample: impl Fn(usize, Draw) -> Rgb + Sync,
     judge: Option<Judge>,
@@ -94,10 +84,10 @@ pub(crate) fn estimate_until(
         .num_threads(options.threads.unwrap_or(0))
         .build()
         .map_err(|e| Error::value(format!("cannot start {:?} threads: {e}", options.threads)))?;
-    goal.announce(reports.control);
+    goal.announce(control);
     let mut run = Run {
         goal: &goal,
-        reports,
+        control,
         sums: vec![Rgb::ZERO; items],
         means: vec![Rgb::ZERO; items],
         done: 0,
@@ -116,7 +106,7 @@ pub(crate) fn estimate_until(
 /// What is known so far.
 struct Run<'a> {
     goal: &'a Goal,
-    reports: Reports<'a>,
+    control: &'a Control,
     /// Sums of the passes' means times their nominal samples.
     sums: Vec<Rgb>,
     /// The same of the pass in work.
@@ -128,14 +118,13 @@ struct Run<'a> {
 
 impl Run<'_> {
     fn pass(&mut self, nominal: u32, sample: &(impl Fn(usize, Draw) -> Rgb + Sync)) -> Result<()> {
-        let (done, reports, goal) = (self.done, self.reports, self.goal);
+        let (done, control, goal) = (self.done, self.control, self.goal);
         let (allotment, groups) = (self.error.allotment(nominal), self.error.groups());
         let chunks = self.means.par_chunks_mut(CHUNK).enumerate().with_max_len(CHUNKS_AT_ONCE);
         chunks.for_each(|(chunk, means)| {
-            if reports.control.is_stopped() {
+            if control.is_stopped() {
                 return;
             }
-            let before = rays_of_this_thread();
             for (i, mean) in means.iter_mut().enumerate() {
                 let item = chunk * CHUNK + i;
                 let pass = allotment[groups.of(item)];
@@ -143,10 +132,9 @@ impl Run<'_> {
                 let sum: Rgb = (0..pass).map(|index| sample(item, draw(index))).sum();
                 *mean = sum * (f64::from(nominal) / f64::from(pass));
             }
-            reports.rays.fetch_add(rays_of_this_thread() - before, Ordering::Relaxed);
-            goal.report(reports.control, means.len() as u64 * u64::from(nominal));
+            goal.report(control, means.len() as u64 * u64::from(nominal));
         });
-        reports.control.check()?;
+        control.check()?;
         self.sums.iter_mut().zip(&self.means).for_each(|(sum, &mean)| *sum += mean);
         self.done += nominal;
         self.error.add(&self.means, nominal, &allotment);
@@ -257,17 +245,12 @@ impl Goal {
 mod tests {
     use super::*;
 
-    fn reports(control: &Control) -> Reports<'_> {
-        static RAYS: AtomicU64 = AtomicU64::new(0);
-        Reports { control, rays: &RAYS }
-    }
-
     #[test]
     fn counts_and_means_are_right_on_any_number_of_threads() {
         let one = |threads| {
             let options = RenderOptions { samples: Some(37), threads: Some(threads), ..Default::default() };
             let control = Control::new();
-            let means = estimate(1000, &options, reports(&control), |i, draw| {
+            let means = estimate(1000, &options, &control, |i, draw| {
                 Rgb::splat(i as f64 + f64::from(draw.done + draw.index).sqrt())
             })
             .expect("runs");
@@ -288,14 +271,11 @@ mod tests {
             std::thread::sleep(Duration::from_millis(1));
             Rgb::ONE
         };
-        let means = estimate(5, &options, reports(&Control::new()), slow).expect("runs");
+        let means = estimate(5, &options, &Control::new(), slow).expect("runs");
         assert!(means.samples >= 8 && start.elapsed().as_secs_f64() < 0.4);
         let control = Control::new();
         control.stop();
-        assert!(matches!(
-            estimate(5, &RenderOptions::default(), reports(&control), slow),
-            Err(Error::Interrupted)
-        ));
+        assert!(matches!(estimate(5, &RenderOptions::default(), &control, slow), Err(Error::Interrupted)));
     }
 
     #[test]
@@ -305,7 +285,7 @@ mod tests {
             RenderOptions { threads: Some(0), ..Default::default() },
             RenderOptions { time_s: Some(f64::NAN), ..Default::default() },
         ] {
-            assert!(estimate(1, &options, reports(&Control::new()), |_, _| Rgb::ONE).is_err());
+            assert!(estimate(1, &options, &Control::new(), |_, _| Rgb::ONE).is_err());
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Single rays and irradiance sensors, as `rtrace` and `rtrace -I`.
 
 use crate::integrator::{Integrator, Limits};
-use crate::passes::{Draw, Means, Reports, estimate};
+use crate::passes::{Draw, Means, estimate};
 use crate::shapes::Ray;
 use crate::{RenderOptions, World};
 use sunpeak_core::{Control, Error, Result, Rgb, Vec3};
@@ -40,8 +40,7 @@ pub fn trace_radiance(
         let mut sampler = draw.alone(options.seed, item as u64);
         integrator.radiance(Ray::new(origin, direction), f64::INFINITY, &mut sampler)
     };
-    let reports = Reports { control, rays: &world.rays };
-    let means = estimate(rays.len(), options, reports, sample)?;
+    let means = estimate(rays.len(), options, control, sample)?;
     world.check_expressions()?;
     Ok(Traced::of(means))
 }
@@ -62,8 +61,7 @@ pub fn trace_irradiance(
         let (point, normal) = sensors[item];
         integrator.irradiance(point, normal, &mut draw.alone(options.seed, item as u64))
     };
-    let reports = Reports { control, rays: &world.rays };
-    let means = estimate(sensors.len(), options, reports, sample)?;
+    let means = estimate(sensors.len(), options, control, sample)?;
     world.check_expressions()?;
     Ok(Traced::of(means))
 }

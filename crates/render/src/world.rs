@@ -14,7 +14,6 @@ use crate::material::{
 };
 use crate::shapes::{COINCIDENT, MeshSurface, Ray};
 use crate::sunlit::SunPatches;
-use std::sync::atomic::{AtomicU64, Ordering};
 use sunpeak_bsdf::PeakRule;
 use sunpeak_core::{Result, Rgb, Vec3};
 use sunpeak_scene::Scene;
@@ -37,7 +36,6 @@ pub struct World {
     /// Objects that are prisms, and a point of each.
     pub(crate) prisms: Vec<(u32, Vec3)>,
     pub(crate) rule: PeakRule,
-    pub(crate) rays: AtomicU64,
     /// Where diffuse surfaces look for light, if there are shades.
     pub(crate) guide: Option<Guide>,
     /// Where the sun comes in, if it does.
@@ -99,11 +97,6 @@ impl World {
     /// The rule by which `aBSDF` materials pass light straight.
     pub fn peak_rule(&self) -> PeakRule {
         self.rule
-    }
-
-    /// Rays that were traced for pictures, rays and sensors so far, shadow rays included.
-    pub fn rays_traced(&self) -> u64 {
-        self.rays.load(Ordering::Relaxed)
     }
 
     pub(crate) fn object(&self, hit: &Hit) -> &Object {

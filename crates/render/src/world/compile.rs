@@ -108,7 +108,6 @@ impl<'s> Compiler<'s> {
             mirrors: self.mirrors,
             prisms: self.prisms,
             rule: self.options.peak,
-            rays: Default::default(),
             guide: None,
             sun_patches: None,
             backlights: Default::default(),
