@@ -13,7 +13,7 @@ use crate::backlight::Backlight;
 use crate::exact_sun::ExactSuns;
 use crate::guide::{GuideAt, Rates};
 use crate::light::power_heuristic;
-use crate::material::{Air, Arrival, Flight, Material, Scattering, Smooth, SmoothSample};
+use crate::material::{Arrival, Flight, Material, Scattering, Smooth, SmoothSample};
 use crate::shapes::Ray;
 use crate::world::{Facing, Seen};
 use crate::{RenderOptions, World};
@@ -70,13 +70,18 @@ impl<'w> Integrator<'w> {
 
     /// Irradiance [W/m²] on the front of a surface element.
     pub fn irradiance(&self, point: Vec3, normal: Vec3, sampler: &mut Sampler) -> Rgb {
-        let sensor = Met::sensor(self.world, point, normal);
+        let arrival = Arrival::new(point, normal, -normal);
+        let scattering =
+            Scattering { smooth: Smooth::Sensor(Frame::from_normal(normal)), ..Scattering::BLACK };
+        let guide = guide_of(self.world, &scattering.smooth, point);
+        let sensor = Met::of_lobes(&arrival, scattering, guide.as_ref());
         let ray = Ray::new(point, -normal);
         let mut path = Path::from_camera(ray, f64::INFINITY, self.world.inside_at(&ray));
         let mut branches = Vec::new();
         let tie = self.tie(sampler);
-        let direct =
-            self.direct(&path, &sensor, sampler) + self.light_of_patches(&path, &sensor, &tie, sampler);
+        let receiver = self.receiver(&path, &sensor);
+        let direct = self.direct(&path, &sensor, &receiver, sampler)
+            + self.light_of_patches(&sensor, &receiver, &tie, sampler);
         if self.scatter(&mut path, &sensor, &mut branches, sampler) {
             branches.push(path);
         }
@@ -104,9 +109,14 @@ impl<'w> Integrator<'w> {
                     Flight::Through(share) => path.throughput *= share,
                     Flight::Scattered(distance, share) => {
                         path.throughput *= share;
-                        let met = Met::air(&air, path.ray.at(distance), path.ray.direction);
+                        let direction = path.ray.direction;
+                        let arrival = Arrival::new(path.ray.at(distance), -direction, direction);
+                        let phase = Smooth::Phase(air.phase(direction));
+                        let met =
+                            Met::of_lobes(&arrival, Scattering { smooth: phase, ..Scattering::BLACK }, None);
                         path.travel(distance);
-                        sum += path.throughput * self.direct(path, &met, sampler);
+                        let receiver = self.receiver(path, &met);
+                        sum += path.throughput * self.direct(path, &met, &receiver, sampler);
                         if !self.scatter(path, &met, branches, sampler) || !survives(path, sampler) {
                             return sum;
                         }
@@ -130,10 +140,15 @@ impl<'w> Integrator<'w> {
                 }
                 Seen::Surface(material) => {
                     path.absorb(material, &arrival, hit.t);
-                    let mut met = Met::new(self.world, &hit, material, arrival, path.is_view());
-                    branches.extend(met.split_straight(path));
+                    let scattering = material.scatter(&arrival, view);
+                    let guide = guide_of(self.world, &scattering.smooth, arrival.point);
+                    let mut met = Met::new(self.world, &hit, material, &arrival, scattering, guide.as_ref());
+                    if let Some(chain) = met.split_straight(path) {
+                        branches.push(chain);
+                    }
                     if met.smooth_share() > 0.0 {
-                        sum += path.throughput * self.direct_from_suns(path, &met, sampler);
+                        let receiver = self.receiver(path, &met);
+                        sum += path.throughput * self.direct_from_suns(path, &met, &receiver, sampler);
                         if met.backlight.is_some() && !path.is_view() {
                             // Most of the shade's light is known; the rest, seldom looked for, counts the more.
                             if sampler.next_1d() >= CORRECTED {
@@ -141,8 +156,8 @@ impl<'w> Integrator<'w> {
                             }
                             path.throughput /= CORRECTED;
                         }
-                        sum += path.throughput * self.direct_from_others(path, &met, sampler);
-                        sum += path.throughput * self.light_of_patches(path, &met, tie, sampler);
+                        sum += path.throughput * self.direct_from_others(&met, &receiver, sampler);
+                        sum += path.throughput * self.light_of_patches(&met, &receiver, tie, sampler);
                     }
                     if !self.go_on(path, &met, branches, sampler) || !survives(path, sampler) {
                         return sum;
@@ -162,17 +177,20 @@ impl<'w> Integrator<'w> {
         if whole <= 0.0 {
             return false;
         }
+        if whole == smooth {
+            return self.scatter(path, met, branches, sampler);
+        }
         let choice = sampler.next_1d() * whole;
         if choice < straight {
             met.go_straight(path, whole / straight);
         } else if choice < straight + mirrored {
-            path.mirror(&met.arrival, met.scattering.mirrored * (whole / mirrored), met.is_flat);
+            path.mirror(met.arrival, met.scattering.mirrored * (whole / mirrored), met.is_flat);
         } else if choice < straight + mirrored + refracted {
             let [first, second] = met.scattering.refracted;
             let of_first = first.map_or(0.0, |(_, share)| luminance(share));
             let is_first = choice - straight - mirrored < of_first;
             let Some((direction, share)) = (if is_first { first } else { second }) else { return false };
-            path.refract(&met.arrival, direction, share * (whole / luminance(share)), met.material);
+            path.refract(met.arrival, direction, share * (whole / luminance(share)), met.material);
         } else {
             return self.scatter(path, met, branches, sampler);
         }
@@ -206,12 +224,12 @@ impl<'w> Integrator<'w> {
                 branch(guide.sample_suns(sampler.next_3d()), path, sampler);
             }
             let [u, v, choice] = sampler.next_3d();
-            let direction = smooth.sample(choice, [u, v], sampler).map(|sample| sample.direction);
+            let direction = smooth.sample_direction(choice, [u, v], sampler);
             return go(path, direction, sampler);
         }
         let [u, v, choice] = sampler.next_3d();
         let direction = if choice < rates.own {
-            smooth.sample(choice / rates.own, [u, v], sampler).map(|sample| sample.direction)
+            smooth.sample_direction(choice / rates.own, [u, v], sampler)
         } else if choice < rates.own + rates.shades {
             guide.sample_shades([(choice - rates.own) / rates.shades, u, v])
         } else {
@@ -289,8 +307,8 @@ fn mixed(met: &Met, guide: &GuideAt, rates: &Rates, direction: Vec3) -> Option<S
 }
 
 /// A surface that a path has met.
-struct Met<'w> {
-    arrival: Arrival,
+struct Met<'a, 'w> {
+    arrival: &'a Arrival,
     /// `None` for a sensor.
     material: Option<&'w Material>,
     is_flat: bool,
@@ -302,43 +320,52 @@ struct Met<'w> {
     /// What it is a point of; `None` for a sensor and for air.
     object: Option<u32>,
     /// Where light comes from, if that helps its lobes.
-    guide: Option<GuideAt<'w>>,
+    guide: Option<&'a GuideAt<'w>>,
 }
 
-impl<'w> Met<'w> {
-    fn new(world: &'w World, hit: &Hit, material: &'w Material, arrival: Arrival, view: bool) -> Self {
-        Self::guided_by(world, hit, material, arrival, view, |point| {
-            world.guide.as_ref().map(|g| g.at(point))
-        })
-    }
-
-    /// With the guide from elsewhere, where it helps.
-    fn guided_by(
+impl<'a, 'w> Met<'a, 'w> {
+    fn new(
         world: &'w World,
         hit: &Hit,
         material: &'w Material,
-        arrival: Arrival,
-        view: bool,
-        guide_at: impl FnOnce(Vec3) -> Option<GuideAt<'w>>,
+        arrival: &'a Arrival,
+        scattering: Scattering<'w>,
+        guide: Option<&'a GuideAt<'w>>,
     ) -> Self {
-        let object = world.object(hit);
-        let scattering = material.scatter(&arrival, view);
         let refracted = scattering.refracted.iter().flatten().map(|(_, share)| luminance(*share)).sum();
         let [straight, mirrored] = [scattering.straight, scattering.mirrored].map(luminance);
         let shares = [straight, mirrored, refracted, scattering.smooth.albedo()];
-        let is_flat = matches!(object.facing, Facing::Flat(_));
         let backlight = match scattering.smooth {
             Smooth::Table(_) => world.backlights.of(hit.object, arrival.at_front()),
             _ => None,
         };
-        let guide = if scattering.smooth.can_be_guided() { guide_at(arrival.point) } else { None };
-        let object = Some(hit.object);
-        Self { arrival, material: Some(material), is_flat, scattering, shares, backlight, object, guide }
+        Self {
+            material: Some(material),
+            is_flat: matches!(world.object(hit).facing, Facing::Flat(_)),
+            shares,
+            backlight,
+            object: Some(hit.object),
+            ..Self::of_lobes(arrival, scattering, guide)
+        }
+    }
+
+    /// A point that has smooth lobes and nothing else: of air, or a sensor.
+    fn of_lobes(arrival: &'a Arrival, scattering: Scattering<'w>, guide: Option<&'a GuideAt<'w>>) -> Self {
+        Self {
+            arrival,
+            material: None,
+            is_flat: true,
+            scattering,
+            shares: [0.0, 0.0, 0.0, 1.0],
+            backlight: None,
+            object: None,
+            guide,
+        }
     }
 
     /// The guide, and how many directions it is asked for here.
-    fn guided(&self, path: &Path) -> Option<(&GuideAt<'w>, Rates)> {
-        let guide = self.guide.as_ref()?;
+    fn guided(&self, path: &Path) -> Option<(&'a GuideAt<'w>, Rates)> {
+        let guide = self.guide?;
         Some((guide, if path.is_view() { guide.one_each() } else { guide.one_direction() }))
     }
 
@@ -360,26 +387,10 @@ impl<'w> Met<'w> {
         path.is_past_peak |= matches!(self.material, Some(Material::Table(_)));
     }
 
-    /// A point of the air at which a ray of this direction is scattered.
-    fn air(air: &Air, point: Vec3, direction: Vec3) -> Self {
-        let scattering = Scattering { smooth: Smooth::Phase(air.phase(direction)), ..Scattering::BLACK };
-        let arrival = Arrival::new(point, -direction, direction);
-        Self {
-            arrival,
-            material: None,
-            is_flat: true,
-            scattering,
-            shares: [0.0, 0.0, 0.0, 1.0],
-            backlight: None,
-            object: None,
-            guide: None,
-        }
-    }
-
     /// Where light that is scattered starts: at the surface, and beyond what a table with thickness stands for.
     fn origins(&self) -> impl Iterator<Item = Vec3> {
         let far = match self.material {
-            Some(Material::Table(table)) if table.thickness(&self.arrival) != 0.0 => {
+            Some(Material::Table(table)) if table.thickness(self.arrival) != 0.0 => {
                 Some(self.straight_origin())
             }
             _ => None,
@@ -390,26 +401,8 @@ impl<'w> Met<'w> {
     /// Where a ray that goes straight on starts: beyond the geometry that a table with thickness stands for.
     fn straight_origin(&self) -> Vec3 {
         match self.material {
-            Some(Material::Table(table)) => self.arrival.point + table.offset(&self.arrival),
+            Some(Material::Table(table)) => self.arrival.point + table.offset(self.arrival),
             _ => self.arrival.point,
-        }
-    }
-
-    /// A surface element that takes up all light at its front.
-    fn sensor(world: &'w World, point: Vec3, normal: Vec3) -> Self {
-        let arrival = Arrival::new(point, normal, -normal);
-        let scattering =
-            Scattering { smooth: Smooth::Sensor(Frame::from_normal(normal)), ..Scattering::BLACK };
-        let guide = guide_of(world, &scattering.smooth, point);
-        Self {
-            arrival,
-            material: None,
-            is_flat: true,
-            scattering,
-            shares: [0.0, 0.0, 0.0, 1.0],
-            backlight: None,
-            object: None,
-            guide,
         }
     }
 

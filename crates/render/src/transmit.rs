@@ -130,9 +130,8 @@ impl World {
             };
             let point = ray.at(hit.t);
             travelled += hit.t;
-            if let Some((seen, _)) =
-                self.meet_volume(self.object(&hit), &self.arrival(&hit, &ray), &mut inside)
-            {
+            let mut arrival = self.arrival(&hit, &ray);
+            if let Some(seen) = self.meet_volume(self.object(&hit), &mut arrival, &mut inside) {
                 if !matches!(seen, Seen::Void) || result.is_blocked() {
                     return Transmitted::BLOCKED;
                 }

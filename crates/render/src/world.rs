@@ -138,9 +138,9 @@ impl World {
         arrival.distance += way[0];
         arrival.travelled += way[1];
         let object = self.object(hit);
-        let (seen, mut arrival) = match self.meet_volume(object, &arrival, inside) {
-            Some(met) => met,
-            None => (self.seen(object.material, &arrival, view), arrival),
+        let seen = match self.meet_volume(object, &mut arrival, inside) {
+            Some(seen) => seen,
+            None => self.seen(object.material, &arrival, view),
         };
         (self.resolved(seen, &mut arrival, view, choose), arrival)
     }
@@ -149,9 +149,9 @@ impl World {
     pub(crate) fn meet_volume(
         &self,
         object: &Object,
-        arrival: &Arrival,
+        arrival: &mut Arrival,
         inside: &mut Inside,
-    ) -> Option<(Seen<'_>, Arrival)> {
+    ) -> Option<Seen<'_>> {
         if !self.has_volumes {
             return None;
         }
@@ -160,7 +160,8 @@ impl World {
             Material::Antimatter(antimatter) if !at_front && inside.is_in_clipped(id) => {
                 // The ray has come into a solid that does not exist here, and now it does: the cut face.
                 if antimatter.face.is_some() {
-                    return Some((self.alternate(antimatter.face), arrival.turned()));
+                    *arrival = arrival.turned();
+                    return Some(self.alternate(antimatter.face));
                 }
                 inside.leave(id);
             }
@@ -175,7 +176,7 @@ impl World {
                 inside.cross_clipped(clipping, at_front);
             }
         }
-        Some((Seen::Void, *arrival))
+        Some(Seen::Void)
     }
 
     /// The air in these volumes, if there is mist.

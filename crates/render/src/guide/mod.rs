@@ -9,7 +9,7 @@
 mod shades;
 mod sun;
 
-use crate::shapes::Triangle;
+use crate::shapes::{Quad, Triangle};
 use shades::ShadesAt;
 pub(crate) use sun::ScatteredSun;
 use sunpeak_core::Vec3;
@@ -28,7 +28,7 @@ const MAX_SCATTERED_SUNS: usize = 8;
 /// Directions worth trying from any diffuse surface.
 #[derive(Clone, Debug)]
 pub(crate) struct Guide {
-    shades: Vec<Triangle>,
+    shades: Vec<Quad>,
     suns: Vec<ScatteredSun>,
 }
 
@@ -58,7 +58,7 @@ impl Guide {
         if shades.len() > MAX_TRIANGLES {
             shades.clear();
         }
-        (!shades.is_empty() || !suns.is_empty()).then_some(Self { shades, suns })
+        (!shades.is_empty() || !suns.is_empty()).then(|| Self { shades: Quad::joined(&shades), suns })
     }
 
     /// As seen from a point.

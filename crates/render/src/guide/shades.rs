@@ -1,56 +1,58 @@
 //! Directions towards shades and windows, evenly over the solid angle that they have.
 
 use super::MAX_TRIANGLES;
-use crate::shapes::{Ray, Triangle};
+use crate::shapes::{Quad, Triangle};
 use std::f64::consts::PI;
 use sunpeak_core::{Vec3, warp};
 
-/// Below this solid angle [sr] there is nothing to see: the point lies in the triangle's plane but for rounding.
-const NOTHING_SR: f64 = 1e-9;
-
-/// Below this solid angle [sr] a point of the triangle is drawn evenly over its area: seen so small the two are alike, and spherical
+/// Below this solid angle [sr] a point of a shade is drawn evenly over its area: seen so small the two are alike, and spherical
 /// trigonometry loses its digits.
 const SMALL_SR: f64 = 1e-4;
 
 /// Shades as a point sees them.
 #[derive(Clone, Debug)]
 pub(super) struct ShadesAt<'g> {
-    triangles: &'g [Triangle],
+    quads: &'g [Quad],
     point: Vec3,
-    /// Of each triangle [sr]; in single precision, since surfaces that are met are handed on by value.
+    /// Of each shade [sr].
     solid_angles: [f32; MAX_TRIANGLES],
     whole: f64,
 }
 
 impl<'g> ShadesAt<'g> {
     /// At most [`MAX_TRIANGLES`].
-    pub fn new(triangles: &'g [Triangle], point: Vec3) -> Self {
+    pub fn new(quads: &'g [Quad], point: Vec3) -> Self {
         let mut solid_angles = [0.0; MAX_TRIANGLES];
-        for (solid_angle, triangle) in solid_angles.iter_mut().zip(triangles) {
-            *solid_angle = solid_angle_of(triangle, point) as f32;
+        for (solid_angle, quad) in solid_angles.iter_mut().zip(quads) {
+            *solid_angle = quad.solid_angle(point) as f32;
         }
-        let whole = solid_angles[..triangles.len()].iter().map(|&s| f64::from(s)).sum();
-        Self { triangles, point, solid_angles, whole }
+        let whole = solid_angles[..quads.len()].iter().map(|&s| f64::from(s)).sum();
+        Self { quads, point, solid_angles, whole }
     }
 
-    fn shades(&self) -> impl Iterator<Item = (&Triangle, f64)> {
-        self.triangles
-            .iter()
-            .zip(&self.solid_angles)
-            .map(|(triangle, &solid_angle)| (triangle, f64::from(solid_angle)))
+    fn shades(&self) -> impl Iterator<Item = (&Quad, f64)> {
+        self.quads.iter().zip(&self.solid_angles).map(|(quad, &solid_angle)| (quad, f64::from(solid_angle)))
     }
 
     /// A direction; `None` where no shade can be seen.
     pub fn sample(&self, [choice, u, v]: [f64; 3]) -> Option<Vec3> {
         let mut left = choice * self.whole;
-        let (triangle, solid_angle) = self.shades().find(|(_, solid_angle)| {
+        let (quad, solid_angle) = self.shades().find(|(_, solid_angle)| {
             left -= solid_angle;
             left < 0.0
         })?;
+        // Where in its solid angle, from 0 to 1: that chooses the half.
+        let at = (1.0 + left / solid_angle).max(0.0);
+        let halves = quad.halves();
         if solid_angle < SMALL_SR {
-            return (Triangle::sample([u, v], triangle.0) - self.point).try_normalize();
+            let first = halves[0].area() / quad.area_vector().length();
+            let half = if at < first { &halves[0] } else { &halves[1] };
+            return (Triangle::sample([u, v], half.0) - self.point).try_normalize();
         }
-        spherical(triangle.0.map(|corner| (corner - self.point).normalize()), solid_angle, [u, v])
+        let first = halves[0].solid_angle(self.point);
+        let (half, solid_angle) =
+            if at * solid_angle < first { (&halves[0], first) } else { (&halves[1], solid_angle - first) };
+        spherical(half.0.map(|corner| (corner - self.point).normalize()), solid_angle, [u, v])
     }
 
     /// Density [1/sr].
@@ -58,29 +60,17 @@ impl<'g> ShadesAt<'g> {
         if self.whole <= 0.0 {
             return 0.0;
         }
-        let ray = Ray::new(self.point, direction);
-        let share = |(triangle, solid_angle): (&Triangle, f64)| {
-            let t = triangle.crossing(&ray);
-            if solid_angle <= 0.0 || !(t > 0.0 && t.is_finite()) {
+        let share = |(quad, solid_angle): (&Quad, f64)| {
+            let Some(t) = quad.crossing(self.point, direction).filter(|_| solid_angle > 0.0) else {
                 return 0.0;
-            }
+            };
             if solid_angle < SMALL_SR {
-                let facing = triangle.area_vector().dot(direction).abs();
-                return if facing > 0.0 { solid_angle * t * t / facing } else { 0.0 };
+                return solid_angle * t * t / quad.area_vector().dot(direction).abs();
             }
             1.0
         };
         self.shades().map(share).sum::<f64>() / self.whole
     }
-}
-
-/// Solid angle of a triangle [sr] (Van Oosterom and Strackee 1983); none from its own plane.
-fn solid_angle_of(triangle: &Triangle, point: Vec3) -> f64 {
-    let [a, b, c] = triangle.0.map(|corner| corner - point);
-    let (la, lb, lc) = (a.length(), b.length(), c.length());
-    let volume = a.dot(b.cross(c)).abs();
-    let solid_angle = 2.0 * volume.atan2(la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-    if volume > 0.0 && solid_angle > NOTHING_SR { solid_angle } else { 0.0 }
 }
 
 /// A direction drawn evenly from a spherical triangle of this solid angle [sr] (Arvo 1995, "Stratified Sampling of Spherical
@@ -111,18 +101,11 @@ fn on_arc(from: Vec3, to: Vec3, cosine: f64) -> Option<Vec3> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shapes::Ray;
     use crate::testing::Random;
 
     fn triangle(offset: Vec3) -> Triangle {
         Triangle([offset, offset + Vec3::new(2.0, 0.0, 0.0), offset + Vec3::new(0.5, 0.3, 1.5)])
-    }
-
-    #[test]
-    fn the_solid_angle_of_an_octant_is_half_of_pi() {
-        let octant = Triangle([Vec3::X, Vec3::Y, Vec3::Z].map(|axis| 7.0 * axis));
-        assert!((solid_angle_of(&octant, Vec3::ZERO) - std::f64::consts::FRAC_PI_2).abs() < 1e-14);
-        assert_eq!(solid_angle_of(&octant, Vec3::X * 7.0), 0.0);
-        assert_eq!(solid_angle_of(&octant, Vec3::new(7.0, 7.0, -7.0)), 0.0);
     }
 
     /// A triangle in 64 smaller ones.
@@ -138,13 +121,19 @@ mod tests {
     #[test]
     fn each_piece_gets_its_solid_angle_of_the_directions() {
         let both = [triangle(Vec3::new(-1.0, 2.0, 0.0)), triangle(Vec3::new(-2.0, -1.0, 1.0))];
-        // Between them, close before one, and far away from one.
+        let [a, b, c] = both[0].0;
+        let window = [both[0], Triangle([a, c, c + 0.8 * (a - b)])];
+        // Between them, close before one, and far away from one; a window of two triangles near and far.
         for (point, shades) in [
             (Vec3::new(0.2, 0.1, 0.3), &both[..]),
             (Vec3::new(0.3, 1.98, 0.3), &both[..]),
             (Vec3::new(90.0, 160.0, 40.0), &both[..1]),
+            (Vec3::new(0.3, 1.5, 0.3), &window[..]),
+            (Vec3::new(90.0, 160.0, 40.0), &window[..]),
         ] {
-            let (at, mut random, n) = (ShadesAt::new(shades, point), Random(5), 50_000);
+            let quads = Quad::joined(shades);
+            assert!(quads.len() == 1 || shades.len() == both.len());
+            let (at, mut random, n) = (ShadesAt::new(&quads, point), Random(5), 50_000);
             let directions: Vec<Vec3> = (0..n)
                 .map(|_| at.sample([random.next(), random.next(), random.next()]).expect("a direction"))
                 .collect();
@@ -154,7 +143,7 @@ mod tests {
             };
             for piece in shades.iter().copied().flat_map(pieces) {
                 let count = directions.iter().filter(|direction| meets(&piece, **direction)).count() as f64;
-                let expected = f64::from(n) * solid_angle_of(&piece, point) / at.whole;
+                let expected = f64::from(n) * piece.solid_angle(point) / at.whole;
                 assert!(
                     (count - expected).abs() < 4.5 * expected.sqrt() + 1.0,
                     "{point}: {count} {expected}"
@@ -168,13 +157,14 @@ mod tests {
         let shades = [triangle(Vec3::new(-1.0, 2.0, 0.0)), triangle(Vec3::new(-2.0, -1.0, 1.0))];
         // A hand's breadth before one, and so far that both are small.
         for point in [Vec3::new(0.3, 2.01, 0.3), Vec3::new(90.0, 160.0, 40.0)] {
-            let at = ShadesAt::new(&shades, point);
+            let quads = Quad::joined(&shades);
+            let at = ShadesAt::new(&quads, point);
             let (mut random, n) = (Random(7), 20_000);
             let sum: f64 = (0..n)
                 .filter_map(|_| at.sample([random.next(), random.next(), random.next()]))
                 .map(|d| 1.0 / at.pdf(d))
                 .sum();
-            let truth: f64 = shades.iter().map(|t| solid_angle_of(t, point)).sum();
+            let truth: f64 = shades.iter().map(|t| t.solid_angle(point)).sum();
             assert!(
                 (sum / f64::from(n) / truth - 1.0).abs() < 1e-3,
                 "{point}: {} {truth}",

@@ -18,13 +18,13 @@ const ALL_REFLECTED_SUNS: usize = 4;
 
 impl Integrator<'_> {
     /// Light from emitters that the smooth lobes scatter back along the path.
-    pub(super) fn direct(&self, path: &Path, met: &Met, sampler: &mut Sampler) -> Rgb {
-        self.direct_from_suns(path, met, sampler) + self.direct_from_others(path, met, sampler)
+    pub(super) fn direct(&self, path: &Path, met: &Met, receiver: &Receiver, sampler: &mut Sampler) -> Rgb {
+        self.direct_from_suns(path, met, receiver, sampler) + self.direct_from_others(met, receiver, sampler)
     }
 
-    pub(super) fn receiver<'a, 'w>(&'a self, path: &Path, met: &'a Met<'w>) -> Receiver<'a, 'w> {
+    pub(super) fn receiver<'a, 'w>(&self, path: &Path, met: &'a Met<'a, 'w>) -> Receiver<'a, 'w> {
         Receiver {
-            arrival: &met.arrival,
+            arrival: met.arrival,
             smooth: &met.scattering.smooth,
             share: met.smooth_share(),
             is_last: self.is_last(path),
@@ -35,40 +35,43 @@ impl Integrator<'_> {
     }
 
     /// The part from suns, and what a shade gives off in the light of a far field.
-    pub(super) fn direct_from_suns(&self, path: &Path, met: &Met, sampler: &mut Sampler) -> Rgb {
-        let receiver = self.receiver(path, met);
+    pub(super) fn direct_from_suns(
+        &self,
+        path: &Path,
+        met: &Met,
+        receiver: &Receiver,
+        sampler: &mut Sampler,
+    ) -> Rgb {
         let mut sum = match (&met.scattering.smooth, met.backlight) {
             (Smooth::Table(lobes), Some(backlight)) => lobes.backlit(backlight),
             _ => Rgb::ZERO,
         };
         let one_sided = receiver.smooth.one_sided();
         for &sun in self.world.distant.suns() {
-            let u = sampler.next_2d();
             if one_sided.is_some_and(|normal| self.world.distant.get(sun).cone.is_behind(normal)) {
                 continue;
             }
-            if let Some(sample) = self.world.distant.sample_sun(sun, u) {
-                let found = self.received(&receiver, &sample, &Target::sun(sun, &sample));
+            if let Some(sample) = self.world.distant.sample_sun(sun, sampler.next_2d()) {
+                let found = self.received(receiver, &sample, &Target::sun(sun, &sample));
                 if found != Rgb::ZERO {
                     sum += found * self.weight_against_ties(path, met, sun, &sample);
                 }
             }
         }
-        sum += self.suns_in_mirrors(&receiver, sampler);
+        sum += self.suns_in_mirrors(receiver, sampler);
         if !self.world.prisms.is_empty() {
-            sum += self.suns_through_prisms(&receiver, sampler);
+            sum += self.suns_through_prisms(receiver, sampler);
         }
         sum
     }
 
     /// The part from sky, ground and lamps, less what of it is known.
-    pub(super) fn direct_from_others(&self, path: &Path, met: &Met, sampler: &mut Sampler) -> Rgb {
-        let receiver = self.receiver(path, met);
+    pub(super) fn direct_from_others(&self, met: &Met, receiver: &Receiver, sampler: &mut Sampler) -> Rgb {
         let mut sum = Rgb::ZERO;
         if self.world.distant.has_dome()
             && let Some(sample) = self.world.distant.sample_dome(sampler.next_2d())
         {
-            sum += self.received(&receiver, &sample, &Target::of(&sample));
+            sum += self.received(receiver, &sample, &Target::of(&sample));
         }
         if self.world.lamps.is_empty() {
             return sum;
@@ -77,7 +80,7 @@ impl Integrator<'_> {
         for origin in met.origins() {
             let sample = self.world.lamps.sample(origin, sampler.next_1d(), sampler.next_2d());
             if let Some(sample) = sample.filter(|s| receiver.origin(s.direction) == origin) {
-                sum += self.received(&receiver, &sample, &Target::of(&sample));
+                sum += self.received(receiver, &sample, &Target::of(&sample));
             }
         }
         sum
@@ -327,7 +330,20 @@ pub(super) struct Receiver<'a, 'w> {
     backlight: Option<&'a Backlight>,
 }
 
-impl Receiver<'_, '_> {
+impl<'a, 'w> Receiver<'a, 'w> {
+    /// At a surface that is met by a tie: past the camera, where there are no volumes, and more may follow.
+    pub fn tied(met: &'a Met<'a, 'w>) -> Self {
+        Self {
+            arrival: met.arrival,
+            smooth: &met.scattering.smooth,
+            share: met.smooth_share(),
+            is_last: false,
+            guide: met.guide.map(|guide| (guide, guide.one_direction())),
+            inside: Inside::default(),
+            backlight: met.backlight,
+        }
+    }
+
     pub fn smooth_value(&self, sample: &LightSample) -> SmoothValue {
         if sample.is_direct {
             self.smooth.toward_source(sample.direction, sample.solid_angle)
@@ -338,7 +354,11 @@ impl Receiver<'_, '_> {
 
     /// Density [1/sr] with which paths go on in this direction, if they go on by the smooth lobes.
     pub fn pdf(&self, direction: Vec3) -> f64 {
-        let own = self.smooth.pdf(direction);
+        self.pdf_with(self.smooth.pdf(direction), direction)
+    }
+
+    /// The same where the lobes' own density is known.
+    pub fn pdf_with(&self, own: f64, direction: Vec3) -> f64 {
         match &self.guide {
             Some((guide, rates)) => rates.own * own + guide.pdf(rates, direction),
             None => own,

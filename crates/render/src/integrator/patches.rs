@@ -1,10 +1,12 @@
 //! Light of patches of sun: the vertices of a path are tied to a point where the sun comes in (see [`crate::sunlit`]).
 
-use super::path::{Departure, Path};
+use super::direct::Receiver;
+use super::path::Path;
 use super::{Integrator, Met};
 use crate::accel::Hit;
 use crate::guide::GuideAt;
 use crate::light::{LightSample, power_heuristic};
+use crate::material::Inside;
 use crate::shapes::Ray;
 use crate::sunlit::{Drawn, SunPatches, SunRay};
 use crate::transmit::Target;
@@ -43,8 +45,8 @@ impl<'w> Integrator<'w> {
     /// Sunlight that one more surface scatters to this one.
     pub(super) fn light_of_patches(
         &self,
-        path: &Path,
         met: &Met,
+        receiver: &Receiver,
         tie: &Tie<'w>,
         sampler: &mut Sampler,
     ) -> Rgb {
@@ -57,7 +59,6 @@ impl<'w> Integrator<'w> {
             Some(Lit { ray, guide })
         };
         let Some(lit) = tie.lit.get_or_init(follow) else { return Rgb::ZERO };
-        let receiver = self.receiver(path, met);
         let origin = met.arrival.point;
         let way = lit.ray.end - origin;
         let distance = way.length();
@@ -65,26 +66,27 @@ impl<'w> Integrator<'w> {
         if distance <= 0.0 || !met.arrival.agrees_on(direction) {
             return Rgb::ZERO;
         }
-        let value = receiver.smooth.evaluate(direction).total() * receiver.cosine(direction);
+        let (value, own) = receiver.smooth.evaluate_with_pdf(direction);
+        let value = value.total() * receiver.cosine(direction);
         if value == Rgb::ZERO {
             return Rgb::ZERO;
         }
         let (ray, hit) = (Ray::new(origin, direction), Hit { t: distance, object: lit.ray.object });
-        let mut onward = *path;
-        let departure = Departure { point: origin, pdf: 0.0, source_factor: 1.0, is_tied: true };
-        onward.depart(departure, direction, Rgb::ONE);
+        let way = [0.0, met.arrival.travelled];
         let mut choose = || sampler.next_1d();
-        let (seen, arrival) =
-            self.world.meet(&hit, &ray, false, &mut onward.inside, [0.0, path.way()[1]], &mut choose);
+        // There are no volumes where there are patches.
+        let (seen, arrival) = self.world.meet(&hit, &ray, false, &mut Inside::default(), way, &mut choose);
         let Seen::Surface(material) = seen else { return Rgb::ZERO };
         let facing = arrival.flat_normal.dot(direction).abs();
         let lit_cosine = arrival.flat_normal.dot(lit.ray.sample.direction).abs();
         let pdf = lit.ray.density * lit_cosine * distance * distance / facing;
-        let other = Met::guided_by(self.world, &hit, material, arrival, false, |_| lit.guide.clone());
+        let scattering = material.scatter(&arrival, false);
+        let guide = lit.guide.as_ref().filter(|_| scattering.smooth.can_be_guided());
+        let other = Met::new(self.world, &hit, material, &arrival, scattering, guide);
         if pdf.is_nan() || pdf <= 0.0 || other.smooth_share() <= 0.0 {
             return Rgb::ZERO;
         }
-        let sunlit = self.receiver(&onward, &other);
+        let sunlit = Receiver::tied(&other);
         let towards_sun = sunlit.smooth_value(&lit.ray.sample);
         if towards_sun.total() == Rgb::ZERO
             || !other.arrival.agrees_on(lit.ray.sample.direction)
@@ -93,7 +95,7 @@ impl<'w> Integrator<'w> {
             return Rgb::ZERO;
         }
         let found = self.received_through(&sunlit, &lit.ray.sample, &towards_sun, &lit.ray.transmitted);
-        let weight = power_heuristic(pdf, receiver.share * receiver.pdf(direction));
+        let weight = power_heuristic(pdf, receiver.share * receiver.pdf_with(own, direction));
         value * found * (weight / pdf)
     }
 

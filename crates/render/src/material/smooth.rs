@@ -177,6 +177,14 @@ impl Smooth<'_> {
         }
     }
 
+    /// The direction of [`Self::sample`] alone.
+    pub fn sample_direction(&self, choice: f64, u: [f64; 2], sampler: &mut Sampler) -> Option<Vec3> {
+        match self {
+            Self::Ward(lobes) => lobes.sample_direction(choice, u),
+            _ => self.sample(choice, u, sampler).map(|sample| sample.direction),
+        }
+    }
+
     /// Draw a direction; `None` as for [`Self::sample`].
     pub fn draw(&self, sampler: &mut Sampler) -> Option<SmoothSample> {
         // A sensor has one lobe.

@@ -62,6 +62,16 @@ pub(crate) struct WardMaterial {
     specular_transmission: f64,
     /// Factor that keeps rough transmission from giving out more than it gets, over the cosine.
     transmission_bound: Option<transmission::Bound>,
+    /// What is scattered at every angle alike, without patterns; `None` where it depends on the angle.
+    constant: Option<Box<Scattered>>,
+}
+
+/// What is scattered of a ray; the lobes' frame is still to be set.
+#[derive(Clone, Debug)]
+struct Scattered {
+    straight: Rgb,
+    mirrored: Rgb,
+    lobes: WardLobes,
 }
 
 /// Shares of a ray at one angle; see "The Materials of Radiance" for the sums.
@@ -93,7 +103,7 @@ impl WardMaterial {
         let across = ward.anisotropy.as_ref().map_or(ward.roughness, |a| a.roughness);
         let alpha = if is_polished { [0.0; 2] } else { [ward.roughness, across] };
         let is_rough_trans = !is_polished && transmissivity * specular_transmission > 0.0;
-        Self {
+        let material = Self {
             color: ward.color,
             specularity: ward.specularity,
             alpha,
@@ -107,7 +117,11 @@ impl WardMaterial {
             transmissivity,
             specular_transmission,
             transmission_bound: is_rough_trans.then(|| transmission::Bound::new(alpha)),
-        }
+            constant: None,
+        };
+        let is_constant = !material.is_fresnel() && !is_rough_trans;
+        let constant = is_constant.then(|| Box::new(material.scattered(Vec3::Z, Rgb::ONE)));
+        Self { constant, ..material }
     }
 
     pub fn is_trans(&self) -> bool {
@@ -167,9 +181,27 @@ impl WardMaterial {
 
     pub fn scatter(&self, arrival: &Arrival) -> Scattering<'static> {
         let (frame, alpha) = self.frame(arrival);
-        let black = WardLobes::black(frame, arrival.direction);
-        let w_in = black.w_in;
-        let shares = self.shares(w_in.z, arrival.tint);
+        let at = WardLobes::black(frame, arrival.direction);
+        let varying;
+        let scattered = match &self.constant {
+            Some(constant) if arrival.tint == Rgb::ONE => constant,
+            _ => {
+                varying = self.scattered(at.w_in, arrival.tint);
+                &varying
+            }
+        };
+        let lobes = WardLobes { frame: at.frame, w_in: at.w_in, alpha, ..scattered.lobes };
+        Scattering {
+            straight: scattered.straight,
+            mirrored: scattered.mirrored,
+            refracted: [None; 2],
+            smooth: if lobes.albedo() > 0.0 { Smooth::Ward(lobes) } else { Smooth::None },
+        }
+    }
+
+    /// What is scattered of a ray from here.
+    fn scattered(&self, w_in: Vec3, tint: Rgb) -> Scattered {
+        let shares = self.shares(w_in.z, tint);
         let is_rough = self.is_rough();
         let rough = |share: Rgb| if is_rough { share } else { Rgb::ZERO };
         let delta = |share: Rgb| if is_rough { Rgb::ZERO } else { share };
@@ -178,17 +210,13 @@ impl WardMaterial {
             diffuse: [shares.diffuse_reflection, shares.diffuse_transmission],
             reflection: rough(shares.specular),
             transmission: rough(shares.specular_transmission) * bound,
-            alpha,
             is_fresnel: self.is_fresnel(),
-            ..black
-        }
-        .weighed();
-        let smooth = if lobes.albedo() > 0.0 { Smooth::Ward(lobes) } else { Smooth::None };
-        Scattering {
+            ..WardLobes::black(Frame::from_normal(Vec3::Z), Vec3::NEG_Z)
+        };
+        Scattered {
             straight: delta(shares.specular_transmission),
             mirrored: delta(shares.specular),
-            refracted: [None; 2],
-            smooth,
+            lobes: lobes.weighed(),
         }
     }
 }
@@ -321,6 +349,11 @@ impl WardLobes {
             pdf,
             source_factor: self.source_factor(direction),
         })
+    }
+
+    /// The direction of [`Self::sample`], whatever its weight.
+    pub fn sample_direction(&self, choice: f64, u: [f64; 2]) -> Option<Vec3> {
+        self.sample_local(choice, u).map(|w_out| self.frame.to_world(w_out))
     }
 
     /// `None` where a Gaussian lobe reaches through the surface.

@@ -3,6 +3,7 @@
 mod cone;
 mod mesh;
 mod polygon;
+mod quad;
 mod ring;
 mod sphere;
 mod triangle;
@@ -10,6 +11,7 @@ mod triangle;
 pub(crate) use cone::Cone;
 pub(crate) use mesh::MeshSurface;
 pub(crate) use polygon::Polygon;
+pub(crate) use quad::Quad;
 pub(crate) use ring::Ring;
 pub(crate) use sphere::Sphere;
 pub(crate) use triangle::Triangle;

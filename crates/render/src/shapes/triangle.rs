@@ -41,6 +41,14 @@ impl Triangle {
         0.5 * (b - a).cross(c - a)
     }
 
+    /// Solid angle [sr] from a point (Van Oosterom and Strackee 1983).
+    pub fn solid_angle(&self, point: Vec3) -> f64 {
+        let [a, b, c] = self.0.map(|corner| corner - point);
+        let (la, lb, lc) = (a.length(), b.length(), c.length());
+        let volume = a.dot(b.cross(c)).abs();
+        2.0 * volume.atan2(la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb)
+    }
+
     /// Weights of the corners that make a point of its plane.
     pub fn weights(&self, point: Vec3) -> [f64; 3] {
         let [a, b, c] = self.0;
@@ -78,6 +86,12 @@ mod tests {
         }
         assert!(t.crossing(&ray(Vec3::new(0.6, 0.6, 0.0), Vec3::Z)).is_infinite());
         assert!(t.crossing(&ray(Vec3::new(0.2, 0.2, 0.0), Vec3::X)).is_infinite());
+    }
+
+    #[test]
+    fn the_solid_angle_of_an_octant_is_half_of_pi() {
+        let octant = Triangle([Vec3::X, Vec3::Y, Vec3::Z].map(|axis| 7.0 * axis));
+        assert!((octant.solid_angle(Vec3::ZERO) - std::f64::consts::FRAC_PI_2).abs() < 1e-14);
     }
 
     #[test]
