@@ -1,6 +1,18 @@
 //! Owen-scrambled Sobol samples (Burley 2020, "Practical Hash-based Owen Scrambling").
 
-use sobol_burley::parts::{hash, hash_int4, owen_scramble_int4_rev, owen_scramble_rev, sobol_int4_rev};
+use sobol_burley::parts::{Int4, hash, hash_int4, owen_scramble_int4_rev, owen_scramble_rev, sobol_int4_rev};
+use std::sync::LazyLock;
+
+/// What each digit of an index, of four bits, adds to the points of the sequence, for each set of dimensions: points are sums over the bits
+/// of their index, bit by bit without carry.
+static DIGITS: LazyLock<Box<[[[Int4; 16]; 4]]>> = LazyLock::new(|| {
+    let of_set = |set: u32| [0, 1, 2, 3].map(|place| digits(set, place));
+    (0..sobol_burley::NUM_DIMENSION_SETS_4D).map(of_set).collect()
+});
+
+fn digits(set: u32, place: u32) -> [Int4; 16] {
+    std::array::from_fn(|digit| sobol_int4_rev((digit as u32) << (28 - 4 * place), set))
+}
 
 /// A sample sequence for one pixel or sensor: each sample index is one path, each call one or two dimensions.
 ///
@@ -81,7 +93,10 @@ fn values(shuffled: u32, set: u32, seed: u32) -> [f32; 4] {
     let mixed = seed.wrapping_mul(0x9c8f_2d3b) ^ set;
     let scramble =
         [0x912f_69ba, 0x174f_18ab, 0x691e_72ca, 0xb40c_c1b8].map(|dimension: u32| dimension ^ mixed);
-    let scrambled = owen_scramble_int4_rev(sobol_int4_rev(shuffled, set), hash_int4(scramble.into()));
+    let [a, b, c, d] = &DIGITS[set as usize];
+    let digit = |place: u32| (shuffled >> (28 - 4 * place)) as usize % 16;
+    let point = a[digit(0)] ^ b[digit(1)] ^ c[digit(2)] ^ d[digit(3)];
+    let scrambled = owen_scramble_int4_rev(point, hash_int4(scramble.into()));
     scrambled.reverse_bits().to_f32_norm()
 }
 
@@ -112,7 +127,8 @@ mod tests {
 
     #[test]
     fn the_halves_make_the_whole() {
-        for (index, set, seed) in [(0, 0, 0), (5, 3, 7), (65_535, 63, 0xffff_ffff), (1234, 17, 0x1234_5678)] {
+        let many = (0..1000u32).map(|i| (i * 65_521 % 65_536, i % 64, i.wrapping_mul(0x9e37_79b9)));
+        for (index, set, seed) in many.chain([(0, 0, 0), (65_535, 63, 0xffff_ffff)]) {
             let whole = sobol_burley::sample_4d(index, set, seed);
             assert_eq!(values(shuffled(index, seed), set, seed), whole);
         }

@@ -309,3 +309,40 @@ impl World {
         alternate.is_none_or(|id| self.material(id).is_transparent())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sunpeak_core::{Sampler, warp};
+    use sunpeak_scene::LoadOptions;
+
+    #[test]
+    fn walls_let_nothing_pass_straight() {
+        let materials = [
+            ("plastic", "0 0 5 .5 .4 .3 .05 .1", true),
+            ("plastic", "0 0 5 .5 .4 .3 .05 0", true),
+            ("metal", "0 0 5 .5 .4 .3 .9 .2", true),
+            ("plastic2", "4 0 0 1 . 0 6 .5 .4 .3 .05 .1 .2", true),
+            ("ashik2", "4 0 0 1 . 0 8 .2 .2 .2 .1 .1 .1 20 40", true),
+            ("trans", "0 0 7 .5 .4 .3 .05 0 .5 .5", false),
+            ("trans", "0 0 7 .5 .4 .3 .05 .1 .5 .5", false),
+            ("glass", "0 0 3 .9 .9 .9", false),
+            ("mirror", "0 0 3 .9 .9 .9", false),
+        ];
+        for (kind, arguments, is_wall) in materials {
+            let text = format!("void {kind} m {arguments}\nm polygon p 0 0 9 0 0 0 1 0 0 0 1 0\n");
+            let scene = Scene::parse(&text, "material.rad", &LoadOptions::default()).expect("parses");
+            let world = World::compile(&scene, &Default::default()).expect("compiles");
+            assert_eq!(world.objects[0].is_wall, is_wall, "{kind} {arguments}");
+            let material = world.material(world.objects[0].material);
+            for i in 0..100 {
+                let direction = warp::uniform_sphere(Sampler::new(0, 0, i).next_2d());
+                let arrival = Arrival::new(Vec3::ZERO, Vec3::Z, direction);
+                for direct in [true, false] {
+                    let passed = material.straight(&arrival, direct);
+                    assert!(!is_wall || passed == Rgb::ZERO, "{kind} {arguments}: {passed}");
+                }
+            }
+        }
+    }
+}

@@ -59,8 +59,6 @@ impl Distant {
 #[derive(Debug, Default)]
 pub(crate) struct DistantSources {
     sources: Vec<Distant>,
-    /// Of each: where it is seen, side by side for the search.
-    cones: Vec<Cone>,
     /// Suns that light: indices among `sources`.
     suns: Vec<usize>,
     dome: Option<Dome>,
@@ -72,8 +70,7 @@ impl DistantSources {
         sources.sort_by_key(Distant::rank);
         let lights = |s: &Distant| s.emitter.illuminates();
         let suns = (0..sources.len()).filter(|&i| sources[i].is_small() && lights(&sources[i])).collect();
-        let cones = sources.iter().map(|s| s.cone).collect();
-        let mut all = Self { sources, cones, suns, dome: None };
+        let mut all = Self { sources, suns, dome: None };
         let has_dome = all.sources.iter().any(|s| !s.is_small() && lights(s));
         all.dome = has_dome.then(|| Dome::new(|d| all.dome_radiance(d))).flatten();
         all
@@ -81,7 +78,7 @@ impl DistantSources {
 
     /// The source that is seen in a direction.
     pub fn seen(&self, direction: Vec3) -> Option<usize> {
-        self.cones.iter().position(|cone| cone.contains(direction))
+        self.sources.iter().position(|source| source.cone.contains(direction))
     }
 
     pub fn get(&self, index: usize) -> &Distant {

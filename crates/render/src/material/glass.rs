@@ -16,10 +16,10 @@ const GRAZING_COSINE: f64 = 1e-9;
 /// A pane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Glass {
-    /// Fraction not absorbed in one crossing at normal incidence.
-    pub transmissivity: Rgb,
+    /// Logarithm of the fraction not absorbed in one crossing at normal incidence.
+    log_transmissivity: Rgb,
     /// Index of refraction.
-    pub index: f64,
+    index: f64,
 }
 
 /// Both faces at one angle.
@@ -33,22 +33,32 @@ struct Faces {
 impl Faces {
     /// Share that goes straight on, unpolarised.
     fn transmittance(&self) -> Rgb {
-        let d = self.crossing;
-        0.5 * self.reflectance.map(|r| (1.0 - r) * (1.0 - r) * d / (1.0 - r * r * d * d)).iter().sum::<Rgb>()
+        self.unpolarised(|r, d| (1.0 - r) * (1.0 - r) * d / (1.0 - r * r * d * d))
     }
 
     /// Share that is mirrored, unpolarised.
     fn mirrored(&self) -> Rgb {
-        let d2 = self.crossing * self.crossing;
-        0.5 * self
-            .reflectance
-            .map(|r| r * (1.0 + (1.0 - 2.0 * r) * d2) / (1.0 - r * r * d2))
-            .iter()
-            .sum::<Rgb>()
+        self.unpolarised(|r, d| r * (1.0 + (1.0 - 2.0 * r) * d * d) / (1.0 - r * r * d * d))
+    }
+
+    fn unpolarised(&self, share: impl Fn(f64, f64) -> f64) -> Rgb {
+        let [perpendicular, parallel] = self.reflectance;
+        each(self.crossing, |d| 0.5 * (share(perpendicular, d) + share(parallel, d)))
     }
 }
 
+/// A function of each colour; of grey, as most glass is, once.
+fn each(color: Rgb, function: impl Fn(f64) -> f64) -> Rgb {
+    let Rgb { x, y, z } = color;
+    if x == y && y == z { Rgb::splat(function(x)) } else { color.map(function) }
+}
+
 impl Glass {
+    /// `transmissivity`: fraction not absorbed in one crossing at normal incidence; `index`: of refraction.
+    pub fn new(transmissivity: Rgb, index: f64) -> Self {
+        Self { log_transmissivity: transmissivity.map(f64::ln), index }
+    }
+
     fn faces(&self, cosine: f64) -> Faces {
         let cosine = cosine.max(GRAZING_COSINE);
         let refracted = (1.0 - (1.0 - cosine * cosine) / (self.index * self.index)).sqrt();
@@ -56,15 +66,8 @@ impl Glass {
         let parallel = (refracted - self.index * cosine) / (refracted + self.index * cosine);
         Faces {
             reflectance: [perpendicular * perpendicular, parallel * parallel],
-            crossing: self.crossing(1.0 / refracted),
+            crossing: each(self.log_transmissivity, |log| (log / refracted).exp()),
         }
-    }
-
-    /// Fraction not absorbed along a way so many times as long as across.
-    fn crossing(&self, way: f64) -> Rgb {
-        let Rgb { x, y, z } = self.transmissivity;
-        // Most glass is grey, and powers are dear.
-        if x == y && y == z { Rgb::splat(x.powf(way)) } else { self.transmissivity.map(|t| t.powf(way)) }
     }
 
     /// Share that goes straight on, unpolarised.
@@ -104,18 +107,18 @@ mod tests {
     #[test]
     fn common_glass_transmits_88_percent() {
         // Reference manual: "the transmissivity of standard 88% transmittance glass is 0.96" (rounded).
-        let glass = Glass { transmissivity: gray(0.96), index: 1.52 };
+        let glass = Glass::new(gray(0.96), 1.52);
         assert!((glass.transmittance(1.0).x - 0.88).abs() < 2e-3);
         // The manual's formula from transmittance to transmissivity.
         let t = 0.7f64;
         let tn = ((0.8402528435 + 0.0072522239 * t * t).sqrt() - 0.9166530661) / 0.0036261119 / t;
-        let glass = Glass { transmissivity: gray(tn), index: 1.52 };
+        let glass = Glass::new(gray(tn), 1.52);
         assert!((glass.transmittance(1.0).x - t).abs() < 1e-6);
     }
 
     #[test]
     fn without_absorption_all_energy_is_kept() {
-        let glass = Glass { transmissivity: gray(1.0), index: 1.52 };
+        let glass = Glass::new(gray(1.0), 1.52);
         for i in 0..=20 {
             let cosine = f64::from(i) / 20.0;
             let sum = glass.faces(cosine).transmittance() + glass.faces(cosine).mirrored();
@@ -125,14 +128,14 @@ mod tests {
 
     #[test]
     fn at_brewsters_angle_parallel_light_is_not_reflected() {
-        let glass = Glass { transmissivity: gray(0.9), index: 1.52 };
+        let glass = Glass::new(gray(0.9), 1.52);
         let cosine = 1.52f64.atan().cos();
         assert!(glass.faces(cosine).reflectance[1] < 1e-20);
     }
 
     #[test]
     fn black_glass_reflects_its_first_face_only() {
-        let glass = Glass { transmissivity: Rgb::ZERO, index: 1.5 };
+        let glass = Glass::new(Rgb::ZERO, 1.5);
         assert_eq!(glass.transmittance(0.7), Rgb::ZERO);
         assert!((glass.faces(1.0).mirrored().x - 0.04).abs() < 1e-12);
     }

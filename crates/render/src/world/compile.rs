@@ -426,7 +426,7 @@ impl<'s> Compiler<'s> {
                 Material::Ward(WardMaterial::trans(ward, *transmissivity, *specular_transmission))
             }
             &Said::Glass { transmissivity, index } => {
-                Material::Glass(Glass { transmissivity, index: checked_index(index, location)? })
+                Material::Glass(Glass::new(transmissivity, checked_index(index, location)?))
             }
             &Said::Dielectric { transmission, index, hartmann } => {
                 Material::Dielectric(Dielectric::new(transmission, checked_index(index, location)?, hartmann))
