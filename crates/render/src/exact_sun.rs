@@ -200,7 +200,8 @@ impl Chains<'_> {
             let place = chain.ray.at(hit.t);
             let mut choose = || scattered(place);
             let inside = &mut chain.inside;
-            let (seen, arrival) = self.world.meet(&hit, &chain.ray, true, inside, [0.0; 2], &mut choose);
+            let mut arrival = self.world.arrival(&hit, &chain.ray);
+            let seen = self.world.meet(hit.object, &mut arrival, true, inside, &mut choose);
             match seen {
                 Seen::Void => open.extend(chain.straight(&arrival, hit.t, Rgb::ONE)),
                 Seen::Emitter(_) => {}

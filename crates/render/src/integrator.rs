@@ -74,7 +74,7 @@ impl<'w> Integrator<'w> {
         let scattering =
             Scattering { smooth: Smooth::Sensor(Frame::from_normal(normal)), ..Scattering::BLACK };
         let guide = guide_of(self.world, &scattering.smooth, point);
-        let sensor = Met::of_lobes(&arrival, scattering, guide.as_ref());
+        let sensor = Met::of_lobes(&arrival, &scattering, guide.as_ref());
         let ray = Ray::new(point, -normal);
         let mut path = Path::from_camera(ray, f64::INFINITY, self.world.inside_at(&ray));
         let mut branches = Vec::new();
@@ -111,9 +111,9 @@ impl<'w> Integrator<'w> {
                         path.throughput *= share;
                         let direction = path.ray.direction;
                         let arrival = Arrival::new(path.ray.at(distance), -direction, direction);
-                        let phase = Smooth::Phase(air.phase(direction));
-                        let met =
-                            Met::of_lobes(&arrival, Scattering { smooth: phase, ..Scattering::BLACK }, None);
+                        let smooth = Smooth::Phase(air.phase(direction));
+                        let scattering = Scattering { smooth, ..Scattering::BLACK };
+                        let met = Met::of_lobes(&arrival, &scattering, None);
                         path.travel(distance);
                         let receiver = self.receiver(path, &met);
                         sum += path.throughput * self.direct(path, &met, &receiver, sampler);
@@ -128,10 +128,10 @@ impl<'w> Integrator<'w> {
                 return sum + path.throughput * self.light_from_infinity(path);
             };
             let object = self.world.object(&hit);
-            let (view, way) = (path.is_view(), path.way());
+            let view = path.is_view();
+            let mut arrival = self.world.arrival_after(path.way(), &hit, &path.ray);
             let mut choose = || sampler.next_1d();
-            let inside = &mut path.inside;
-            let (seen, arrival) = self.world.meet(&hit, &path.ray, view, inside, way, &mut choose);
+            let seen = self.world.meet(hit.object, &mut arrival, view, &mut path.inside, &mut choose);
             path.travel(hit.t);
             match seen {
                 Seen::Void => path.go_straight(arrival.point, Rgb::ONE),
@@ -142,7 +142,7 @@ impl<'w> Integrator<'w> {
                     path.absorb(material, &arrival, hit.t);
                     let scattering = material.scatter(&arrival, view);
                     let guide = guide_of(self.world, &scattering.smooth, arrival.point);
-                    let mut met = Met::new(self.world, &hit, material, &arrival, scattering, guide.as_ref());
+                    let mut met = Met::new(self.world, &hit, material, &arrival, &scattering, guide.as_ref());
                     if let Some(chain) = met.split_straight(path) {
                         branches.push(chain);
                     }
@@ -312,7 +312,7 @@ struct Met<'a, 'w> {
     /// `None` for a sensor.
     material: Option<&'w Material>,
     is_flat: bool,
-    scattering: Scattering<'w>,
+    scattering: &'a Scattering<'w>,
     /// Luminous weights of the ways on: straight, mirrored, refracted, smooth.
     shares: [f64; 4],
     /// The far field behind it.
@@ -329,7 +329,7 @@ impl<'a, 'w> Met<'a, 'w> {
         hit: &Hit,
         material: &'w Material,
         arrival: &'a Arrival,
-        scattering: Scattering<'w>,
+        scattering: &'a Scattering<'w>,
         guide: Option<&'a GuideAt<'w>>,
     ) -> Self {
         let refracted = scattering.refracted.iter().flatten().map(|(_, share)| luminance(*share)).sum();
@@ -350,7 +350,11 @@ impl<'a, 'w> Met<'a, 'w> {
     }
 
     /// A point that has smooth lobes and nothing else: of air, or a sensor.
-    fn of_lobes(arrival: &'a Arrival, scattering: Scattering<'w>, guide: Option<&'a GuideAt<'w>>) -> Self {
+    fn of_lobes(
+        arrival: &'a Arrival,
+        scattering: &'a Scattering<'w>,
+        guide: Option<&'a GuideAt<'w>>,
+    ) -> Self {
         Self {
             arrival,
             material: None,

@@ -113,7 +113,8 @@ fn first_source(world: &World, direction: Vec3) -> Option<FirstSurface> {
 /// As a view ray sees it; of a mixture of materials the larger share.
 fn seen<'w>(world: &'w World, hit: &Hit, ray: &Ray) -> (Seen<'w>, Arrival) {
     let mut inside = world.inside_at(ray);
-    world.meet(hit, ray, true, &mut inside, [0.0; 2], &mut || 0.5)
+    let mut arrival = world.arrival(hit, ray);
+    (world.meet(hit.object, &mut arrival, true, &mut inside, &mut || 0.5), arrival)
 }
 
 /// Radiance turns the normal to the ray where a surface scatters; solids of glass keep it, mirrors and what shines have a front only.

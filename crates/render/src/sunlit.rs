@@ -160,8 +160,8 @@ impl SunPatches {
         let inwards = Ray::new(ray.start, -ray.sample.direction);
         let hit = Hit { t: ray.start.distance(ray.end), object: ray.object };
         let mut choose = || sampler.next_1d();
-        let (seen, arrival) =
-            world.meet(&hit, &inwards, false, &mut Inside::default(), [0.0; 2], &mut choose);
+        let mut arrival = world.arrival(&hit, &inwards);
+        let seen = world.meet(ray.object, &mut arrival, false, &mut Inside::default(), &mut choose);
         let Seen::Surface(material) = seen else { return 0.0 };
         let albedo = material.scatter(&arrival, false).smooth.albedo();
         let radiance = luminance(world.distant.radiance(&ray.sample) * ray.transmitted.share);

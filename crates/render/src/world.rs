@@ -123,26 +123,30 @@ impl World {
         Arrival { distance: hit.t, travelled: hit.t, ..Arrival::new(point, normal, ray.direction) }
     }
 
-    /// What a path that is in these volumes meets; they change where it passes a boundary. `way` is how far the path has come before:
-    /// since it was last scattered, and since the camera [m]. `choose` gives random numbers in [0, 1), for mixtures.
-    pub(crate) fn meet(
-        &self,
-        hit: &Hit,
-        ray: &Ray,
-        view: bool,
-        inside: &mut Inside,
-        way: [f64; 2],
-        choose: &mut dyn FnMut() -> f64,
-    ) -> (Seen<'_>, Arrival) {
+    /// The same of a path that has come so far before: since it was last scattered, and since the camera [m].
+    pub(crate) fn arrival_after(&self, way: [f64; 2], hit: &Hit, ray: &Ray) -> Arrival {
         let mut arrival = self.arrival(hit, ray);
         arrival.distance += way[0];
         arrival.travelled += way[1];
-        let object = self.object(hit);
-        let seen = match self.meet_volume(object, &mut arrival, inside) {
+        arrival
+    }
+
+    /// What a path that is in these volumes meets; they change where it passes a boundary, and the arrival where patterns, textures,
+    /// mixtures or a cut have a say. `choose` gives random numbers in [0, 1), for mixtures.
+    pub(crate) fn meet(
+        &self,
+        object: u32,
+        arrival: &mut Arrival,
+        view: bool,
+        inside: &mut Inside,
+        choose: &mut dyn FnMut() -> f64,
+    ) -> Seen<'_> {
+        let object = &self.objects[object as usize];
+        let seen = match self.meet_volume(object, arrival, inside) {
             Some(seen) => seen,
-            None => self.seen(object.material, &arrival, view),
+            None => self.seen(object.material, arrival, view),
         };
-        (self.resolved(seen, &mut arrival, view, choose), arrival)
+        self.resolved(seen, arrival, view, choose)
     }
 
     /// Boundaries of volumes and what they hide; `None` for all other surfaces.

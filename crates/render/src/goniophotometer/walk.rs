@@ -53,7 +53,8 @@ pub(super) fn straight(world: &World, cell: &Cell, mut ray: Ray, sampler: &mut S
             Next::Lost => return Rgb::ZERO,
         };
         let mut choose = || sampler.next_1d();
-        let (seen, arrival) = world.meet(&hit, &ray, true, &mut inside, [passed; 2], &mut choose);
+        let mut arrival = world.arrival_after([passed; 2], &hit, &ray);
+        let seen = world.meet(hit.object, &mut arrival, true, &mut inside, &mut choose);
         passed += hit.t;
         match seen {
             Seen::Void => ray = Ray::past(arrival.point, ray.direction),
@@ -102,7 +103,8 @@ pub(super) fn fork(
         let length = passed + hit.t;
         let way = [stem.distance + passed, stem.travelled + passed];
         let mut choose = || sampler.next_1d();
-        let (seen, arrival) = world.meet(&hit, &stem.ray, true, &mut stem.inside, way, &mut choose);
+        let mut arrival = world.arrival_after(way, &hit, &stem.ray);
+        let seen = world.meet(hit.object, &mut arrival, true, &mut stem.inside, &mut choose);
         stem.travel(length);
         match seen {
             Seen::Void => stem.ray = Ray::past(arrival.point, stem.ray.direction),
@@ -222,7 +224,8 @@ impl<'w> Walker<'w> {
             let way = [self.distance + passed, self.travelled + passed];
             let view = self.way < Way::Scattered;
             let mut choose = || sampler.next_1d();
-            let (seen, arrival) = self.world.meet(&hit, &self.ray, view, &mut self.inside, way, &mut choose);
+            let mut arrival = self.world.arrival_after(way, &hit, &self.ray);
+            let seen = self.world.meet(hit.object, &mut arrival, view, &mut self.inside, &mut choose);
             self.travel(length);
             match seen {
                 Seen::Void => self.ray = Ray::past(arrival.point, self.ray.direction),

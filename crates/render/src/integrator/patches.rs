@@ -72,17 +72,17 @@ impl<'w> Integrator<'w> {
             return Rgb::ZERO;
         }
         let (ray, hit) = (Ray::new(origin, direction), Hit { t: distance, object: lit.ray.object });
-        let way = [0.0, met.arrival.travelled];
+        let mut arrival = self.world.arrival_after([0.0, met.arrival.travelled], &hit, &ray);
         let mut choose = || sampler.next_1d();
         // There are no volumes where there are patches.
-        let (seen, arrival) = self.world.meet(&hit, &ray, false, &mut Inside::default(), way, &mut choose);
+        let seen = self.world.meet(hit.object, &mut arrival, false, &mut Inside::default(), &mut choose);
         let Seen::Surface(material) = seen else { return Rgb::ZERO };
         let facing = arrival.flat_normal.dot(direction).abs();
         let lit_cosine = arrival.flat_normal.dot(lit.ray.sample.direction).abs();
         let pdf = lit.ray.density * lit_cosine * distance * distance / facing;
         let scattering = material.scatter(&arrival, false);
         let guide = lit.guide.as_ref().filter(|_| scattering.smooth.can_be_guided());
-        let other = Met::new(self.world, &hit, material, &arrival, scattering, guide);
+        let other = Met::new(self.world, &hit, material, &arrival, &scattering, guide);
         if pdf.is_nan() || pdf <= 0.0 || other.smooth_share() <= 0.0 {
             return Rgb::ZERO;
         }
