@@ -30,8 +30,8 @@ ground_glow source ground 0 0 4 0 0 -1 180
 EYE = "rvu -vta -vp 1.8 3.2 1.2 -vd 0 -1 0 -vu 0 0 1 -vh 180 -vv 180\n"
 SENSORS = "\n".join(f"{x} {y} 0.8 0 0 1" for y in (1.0, 1.8, 2.6) for x in (0.6, 3.0)) + "\n"
 
-# No ambient cache, nothing cut off.
-FINE = "-ab 2 -aa 0 -as 0 -lr -12 -lw 1e-8 -st 0 -ds .05 -dj .7"
+# Neither ambient cache nor truncation.
+WHOLE = "-ab 2 -aa 0 -as 0 -lr -12 -lw 1e-8 -st 0 -ds .05 -dj .7"
 
 TUTORIAL = """
 set -e
@@ -66,12 +66,12 @@ class Programs:
     path: str
     library: Path
     directions: int
-    """That sensors take. At 16384 Radiance's dark ones scatter by a percent, in other random numbers each time."""
+    """Of sensors. At 16384, which do for ours, Radiance's dark ones scatter by a percent, anew in every run."""
 
     @property
     def fine(self) -> str:
-        """Options that make it right to half a percent."""
-        return f"{FINE} -ad {self.directions}"
+        """Options of sensors that both agree with to a percent."""
+        return f"{WHOLE} -ad {self.directions}"
 
     def run(self, script: str, folder: Path) -> None:
         """Run a shell script."""

@@ -178,6 +178,7 @@ impl<'w> Integrator<'w> {
             return false;
         }
         if whole == smooth {
+            // No choice, no random number.
             return self.scatter(path, met, branches, sampler);
         }
         let choice = sampler.next_1d() * whole;

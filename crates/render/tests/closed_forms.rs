@@ -36,6 +36,26 @@ fn in_a_furnace_lossless_things_are_invisible() {
 }
 
 #[test]
+fn in_a_furnace_a_lossless_sheet_is_invisible_however_it_lies() {
+    // Paths are sent towards sheets that let light through; a sheet does not look for itself.
+    let (center, across) = (Vec3::new(0.31, 0.17, 0.23), Vec3::new(0.6, 0.5, -0.4).normalize());
+    let along = across.cross(Vec3::new(0.2, -0.3, 0.9)).normalize();
+    let corners =
+        [(-1.0, -0.7), (1.0, -0.7), (1.0, 0.7), (-1.0, 0.7)].map(|(x, y)| center + across * x + along * y);
+    let corners: String = corners.iter().map(|c| format!(" {} {} {}", c.x, c.y, c.z)).collect();
+    let text = format!(
+        "void glow shine 0 0 4 1 1 1 0\nshine bubble shell 0 0 4 0 0 0 5\n\
+         void trans sheet 0 0 7 1 1 1 0 0 0.4 0\nsheet polygon p 0 0 12{corners}\n"
+    );
+    let (world, normal) = (world(&text), across.cross(along));
+    for (x, y, side) in [(0.1, 0.2, 1.0), (-0.7, 0.3, -1.0), (0.6, -0.5, 1.0)] {
+        let eye = center + across * x + along * y + normal * side;
+        let value = radiance(&world, eye, -normal * side, &samples(4096));
+        assert_close("sheet in a furnace", value, 1.0, 0.005);
+    }
+}
+
+#[test]
 fn a_furnace_glows_with_its_emission_over_one_minus_its_reflectance() {
     // Walls that emit Le and reflect rho: here a black shell that emits, and just inside it a diffuse sheet of reflectance rho and
     // transmittance tau: the sheet's inside radiance is L = rho L + tau Le.

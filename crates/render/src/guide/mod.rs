@@ -2,7 +2,7 @@
 //!
 //! Light that a shade scatters can be found by no shadow ray from the room; a path has to meet the shade and go on from there.
 //! Two things are known beforehand: where the shades are, and into which directions they scatter the sun, in a table without its
-//! peak extracted a thousandfold within one cell. So directions are drawn in part towards a random point of the shades, in part
+//! peak extracted a thousandfold within one cell. So directions are drawn in part towards the shades, evenly over the solid angle that they have, in part
 //! against the directions in which a shade's table sends the light of a sun, and the rest from the surface's own lobes. The density
 //! of the mixture is known, so nothing is biased (Veach 1997, section 9.2: one-sample model with the balance heuristic).
 
@@ -19,7 +19,8 @@ use sunpeak_core::Vec3;
 const TO_SHADES: f64 = 0.3;
 const AGAINST_SUNS: f64 = 0.2;
 
-/// With more triangles of shades than this, looking at each of them costs more than it brings.
+/// With more triangles of shades than this, looking at each of them costs more than it brings. (Two that make a quadrilateral are looked at
+/// as one.)
 pub(crate) const MAX_TRIANGLES: usize = 32;
 
 /// With more pairs of sun and shade than this, likewise.

@@ -14,13 +14,13 @@ const SMALL_SR: f64 = 1e-4;
 pub(super) struct ShadesAt<'g> {
     quads: &'g [Quad],
     point: Vec3,
-    /// Of each shade [sr].
+    /// Of each shade [sr]; in single precision, since every diffuse vertex writes them all.
     solid_angles: [f32; MAX_TRIANGLES],
     whole: f64,
 }
 
 impl<'g> ShadesAt<'g> {
-    /// At most [`MAX_TRIANGLES`].
+    /// Of at most [`MAX_TRIANGLES`] shades.
     pub fn new(quads: &'g [Quad], point: Vec3) -> Self {
         let mut solid_angles = [0.0; MAX_TRIANGLES];
         for (solid_angle, quad) in solid_angles.iter_mut().zip(quads) {
@@ -47,7 +47,7 @@ impl<'g> ShadesAt<'g> {
         if solid_angle < SMALL_SR {
             let first = halves[0].area() / quad.area_vector().length();
             let half = if at < first { &halves[0] } else { &halves[1] };
-            return (Triangle::sample([u, v], half.0) - self.point).try_normalize();
+            return Triangle::sample([u, v], half.0.map(|corner| corner - self.point)).try_normalize();
         }
         let first = halves[0].solid_angle(self.point);
         let (half, solid_angle) =
@@ -122,7 +122,8 @@ mod tests {
     fn each_piece_gets_its_solid_angle_of_the_directions() {
         let both = [triangle(Vec3::new(-1.0, 2.0, 0.0)), triangle(Vec3::new(-2.0, -1.0, 1.0))];
         let [a, b, c] = both[0].0;
-        let window = [both[0], Triangle([a, c, c + 0.8 * (a - b)])];
+        // A trapezoid of unlike halves.
+        let window = [both[0], Triangle([a, c, c + 0.3 * (a - b)])];
         // Between them, close before one, and far away from one; a window of two triangles near and far.
         for (point, shades) in [
             (Vec3::new(0.2, 0.1, 0.3), &both[..]),
@@ -154,22 +155,26 @@ mod tests {
 
     #[test]
     fn the_inverse_density_sums_to_the_solid_angle_near_and_far() {
-        let shades = [triangle(Vec3::new(-1.0, 2.0, 0.0)), triangle(Vec3::new(-2.0, -1.0, 1.0))];
+        let both = [triangle(Vec3::new(-1.0, 2.0, 0.0)), triangle(Vec3::new(-2.0, -1.0, 1.0))];
+        let [a, b, c] = both[0].0;
+        let window = [both[0], Triangle([a, c, c + 0.3 * (a - b)])];
         // A hand's breadth before one, and so far that both are small.
-        for point in [Vec3::new(0.3, 2.01, 0.3), Vec3::new(90.0, 160.0, 40.0)] {
+        for (point, shades) in [Vec3::new(0.3, 2.01, 0.3), Vec3::new(90.0, 160.0, 40.0)]
+            .into_iter()
+            .flat_map(|point| [(point, both), (point, window)])
+        {
             let quads = Quad::joined(&shades);
             let at = ShadesAt::new(&quads, point);
             let (mut random, n) = (Random(7), 20_000);
             let sum: f64 = (0..n)
-                .filter_map(|_| at.sample([random.next(), random.next(), random.next()]))
-                .map(|d| 1.0 / at.pdf(d))
+                .map(|_| {
+                    let direction = at.sample([random.next(), random.next(), random.next()]);
+                    1.0 / at.pdf(direction.expect("a direction"))
+                })
                 .sum();
             let truth: f64 = shades.iter().map(|t| t.solid_angle(point)).sum();
-            assert!(
-                (sum / f64::from(n) / truth - 1.0).abs() < 1e-3,
-                "{point}: {} {truth}",
-                sum / f64::from(n)
-            );
+            let mean = sum / f64::from(n);
+            assert!((mean / truth - 1.0).abs() < 1e-3, "{point}: {mean} {truth}");
         }
     }
 }

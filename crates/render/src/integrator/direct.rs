@@ -23,15 +23,7 @@ impl Integrator<'_> {
     }
 
     pub(super) fn receiver<'a, 'w>(&self, path: &Path, met: &'a Met<'a, 'w>) -> Receiver<'a, 'w> {
-        Receiver {
-            arrival: met.arrival,
-            smooth: &met.scattering.smooth,
-            share: met.smooth_share(),
-            is_last: self.is_last(path),
-            guide: met.guided(path),
-            inside: path.inside,
-            backlight: met.backlight,
-        }
+        Receiver::new(met, met.guided(path), self.is_last(path), path.inside)
     }
 
     /// The part from suns, and what a shade gives off in the light of a far field.
@@ -48,6 +40,7 @@ impl Integrator<'_> {
         };
         let one_sided = receiver.smooth.one_sided();
         for &sun in self.world.distant.suns() {
+            // Random numbers are for suns that light: of a plane surface the same ones in all samples.
             if one_sided.is_some_and(|normal| self.world.distant.get(sun).cone.is_behind(normal)) {
                 continue;
             }
@@ -331,17 +324,14 @@ pub(super) struct Receiver<'a, 'w> {
 }
 
 impl<'a, 'w> Receiver<'a, 'w> {
-    /// At a surface that is met by a tie: past the camera, where there are no volumes, and more may follow.
-    pub fn tied(met: &'a Met<'a, 'w>) -> Self {
-        Self {
-            arrival: met.arrival,
-            smooth: &met.scattering.smooth,
-            share: met.smooth_share(),
-            is_last: false,
-            guide: met.guide.map(|guide| (guide, guide.one_direction())),
-            inside: Inside::default(),
-            backlight: met.backlight,
-        }
+    pub fn new(
+        met: &'a Met<'a, 'w>,
+        guide: Option<(&'a GuideAt<'w>, Rates)>,
+        is_last: bool,
+        inside: Inside,
+    ) -> Self {
+        let (arrival, smooth, backlight) = (met.arrival, &met.scattering.smooth, met.backlight);
+        Self { arrival, smooth, share: met.smooth_share(), is_last, guide, inside, backlight }
     }
 
     pub fn smooth_value(&self, sample: &LightSample) -> SmoothValue {

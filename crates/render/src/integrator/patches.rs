@@ -86,7 +86,8 @@ impl<'w> Integrator<'w> {
         if pdf.is_nan() || pdf <= 0.0 || other.smooth_share() <= 0.0 {
             return Rgb::ZERO;
         }
-        let sunlit = Receiver::tied(&other);
+        let rates = guide.map(|guide| (guide, guide.one_direction()));
+        let sunlit = Receiver::new(&other, rates, false, Inside::default());
         let towards_sun = sunlit.smooth_value(&lit.ray.sample);
         if towards_sun.total() == Rgb::ZERO
             || !other.arrival.agrees_on(lit.ray.sample.direction)

@@ -62,11 +62,11 @@ pub(crate) struct WardMaterial {
     specular_transmission: f64,
     /// Factor that keeps rough transmission from giving out more than it gets, over the cosine.
     transmission_bound: Option<transmission::Bound>,
-    /// What is scattered at every angle alike, without patterns; `None` where it depends on the angle.
+    /// What is scattered at every angle alike where no pattern tints it; `None` where it depends on the angle.
     constant: Option<Box<Scattered>>,
 }
 
-/// What is scattered of a ray; the lobes' frame is still to be set.
+/// What is scattered of a ray; frame, incidence and roughness of the lobes are still to be set.
 #[derive(Clone, Debug)]
 struct Scattered {
     straight: Rgb,

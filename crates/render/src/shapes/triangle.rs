@@ -41,12 +41,18 @@ impl Triangle {
         0.5 * (b - a).cross(c - a)
     }
 
-    /// Solid angle [sr] from a point (Van Oosterom and Strackee 1983).
+    /// Solid angle [sr] from a point.
     pub fn solid_angle(&self, point: Vec3) -> f64 {
+        let [x, y] = self.half_solid_angle(point);
+        2.0 * y.atan2(x)
+    }
+
+    /// A complex number whose angle is half of the solid angle from a point (Van Oosterom and Strackee 1983).
+    #[inline(always)]
+    pub fn half_solid_angle(&self, point: Vec3) -> [f64; 2] {
         let [a, b, c] = self.0.map(|corner| corner - point);
         let (la, lb, lc) = (a.length(), b.length(), c.length());
-        let volume = a.dot(b.cross(c)).abs();
-        2.0 * volume.atan2(la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb)
+        [la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb, a.dot(b.cross(c)).abs()]
     }
 
     /// Weights of the corners that make a point of its plane.
