@@ -1,7 +1,7 @@
 //! Do the intervals of sampling hold what they say? Pictures with known noise, drawn many times.
 #![allow(clippy::unwrap_used)] // a helper that fails fails the test
 
-use sunpeak_core::{Sampler, Vec3};
+use sunpeak_core::{LUMINOUS_EFFICACY, Sampler, Vec3};
 use sunpeak_glare::{GlareOptions, GlareReport, evaluate};
 use sunpeak_scene::{BlockErrors, Camera, Picture, View};
 
@@ -59,11 +59,11 @@ impl Scene {
     fn draw(&self, random: &mut Sampler) -> Vec<[f32; 3]> {
         let mut pixel = |points: &[f64; POINTS * POINTS]| {
             if points.iter().all(|value| *value == points[0]) {
-                return [(points[0] / 179.0) as f32; 3];
+                return [(points[0] / LUMINOUS_EFFICACY) as f32; 3];
             }
             let mut one = || points[(random.next_1d() * points.len() as f64) as usize];
             let mean = (0..SAMPLES).map(|_| one()).sum::<f64>() / SAMPLES as f64;
-            [(mean / 179.0) as f32; 3]
+            [(mean / LUMINOUS_EFFICACY) as f32; 3]
         };
         self.0.iter().map(&mut pixel).collect()
     }

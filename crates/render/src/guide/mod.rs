@@ -2,9 +2,9 @@
 //!
 //! Light that a shade scatters can be found by no shadow ray from the room; a path has to meet the shade and go on from there.
 //! Two things are known beforehand: where the shades are, and into which directions they scatter the sun, in a table without its
-//! peak extracted a thousandfold within one cell. So directions are drawn in part towards the shades, evenly over the solid angle that they have, in part
-//! against the directions in which a shade's table sends the light of a sun, and the rest from the surface's own lobes. The density
-//! of the mixture is known, so nothing is biased (Veach 1997, section 9.2: one-sample model with the balance heuristic).
+//! peak extracted a thousandfold within one cell. So directions are drawn in part towards the shades, evenly over the solid angle
+//! that they have, in part against the directions in which a shade's table sends the light of a sun, and the rest from the surface's
+//! own lobes. The density of the mixture is known, so nothing is biased (Veach 1997, section 9.2: one-sample model with the balance heuristic).
 
 mod shades;
 mod sun;

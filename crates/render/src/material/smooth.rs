@@ -177,7 +177,7 @@ impl Smooth<'_> {
         }
     }
 
-    /// The direction of [`Self::sample`] alone.
+    /// The direction of [`Self::sample`] alone; it may have no weight.
     pub fn sample_direction(&self, choice: f64, u: [f64; 2], sampler: &mut Sampler) -> Option<Vec3> {
         match self {
             Self::Ward(lobes) => lobes.sample_direction(choice, u),

@@ -62,11 +62,12 @@ pub(crate) struct WardMaterial {
     specular_transmission: f64,
     /// Factor that keeps rough transmission from giving out more than it gets, over the cosine.
     transmission_bound: Option<transmission::Bound>,
-    /// What is scattered at every angle alike where no pattern tints it; `None` where it depends on the angle.
+    /// What is scattered at every angle alike where no pattern tints it, but for frame, incidence and roughness; `None` where it depends
+    /// on the angle.
     constant: Option<Box<Scattered>>,
 }
 
-/// What is scattered of a ray; frame, incidence and roughness of the lobes are still to be set.
+/// What is scattered of a ray.
 #[derive(Clone, Debug)]
 struct Scattered {
     straight: Rgb,
@@ -120,7 +121,8 @@ impl WardMaterial {
             constant: None,
         };
         let is_constant = !material.is_fresnel() && !is_rough_trans;
-        let constant = is_constant.then(|| Box::new(material.scattered(Vec3::Z, Rgb::ONE)));
+        let anywhere = WardLobes::black(Frame::from_normal(Vec3::Z), Vec3::NEG_Z);
+        let constant = is_constant.then(|| Box::new(material.scattered(anywhere, Rgb::ONE)));
         Self { constant, ..material }
     }
 
@@ -181,26 +183,21 @@ impl WardMaterial {
 
     pub fn scatter(&self, arrival: &Arrival) -> Scattering<'static> {
         let (frame, alpha) = self.frame(arrival);
-        let at = WardLobes::black(frame, arrival.direction);
-        let varying;
-        let scattered = match &self.constant {
-            Some(constant) if arrival.tint == Rgb::ONE => constant,
-            _ => {
-                varying = self.scattered(at.w_in, arrival.tint);
-                &varying
-            }
+        let black = WardLobes { alpha, ..WardLobes::black(frame, arrival.direction) };
+        let Scattered { straight, mirrored, lobes } = match &self.constant {
+            Some(constant) if arrival.tint == Rgb::ONE => Scattered {
+                lobes: WardLobes { frame: black.frame, w_in: black.w_in, alpha, ..constant.lobes },
+                ..**constant
+            },
+            _ => self.scattered(black, arrival.tint),
         };
-        let lobes = WardLobes { frame: at.frame, w_in: at.w_in, alpha, ..scattered.lobes };
-        Scattering {
-            straight: scattered.straight,
-            mirrored: scattered.mirrored,
-            refracted: [None; 2],
-            smooth: if lobes.albedo() > 0.0 { Smooth::Ward(lobes) } else { Smooth::None },
-        }
+        let smooth = if lobes.albedo() > 0.0 { Smooth::Ward(lobes) } else { Smooth::None };
+        Scattering { straight, mirrored, refracted: [None; 2], smooth }
     }
 
-    /// What is scattered of a ray from here.
-    fn scattered(&self, w_in: Vec3, tint: Rgb) -> Scattered {
+    /// What is scattered of a ray, where it has arrived at lobes that are still black.
+    fn scattered(&self, black: WardLobes, tint: Rgb) -> Scattered {
+        let w_in = black.w_in;
         let shares = self.shares(w_in.z, tint);
         let is_rough = self.is_rough();
         let rough = |share: Rgb| if is_rough { share } else { Rgb::ZERO };
@@ -211,7 +208,7 @@ impl WardMaterial {
             reflection: rough(shares.specular),
             transmission: rough(shares.specular_transmission) * bound,
             is_fresnel: self.is_fresnel(),
-            ..WardLobes::black(Frame::from_normal(Vec3::Z), Vec3::NEG_Z)
+            ..black
         };
         Scattered {
             straight: delta(shares.specular_transmission),
