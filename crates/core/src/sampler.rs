@@ -27,7 +27,8 @@ pub struct Sampler {
     set: u32,
     round: u32,
     values: [f32; 4],
-    left: usize,
+    /// How many of the values were given out.
+    used: usize,
 }
 
 impl Sampler {
@@ -36,7 +37,7 @@ impl Sampler {
         let chunk = index / Self::CHUNK;
         let mixed = mix(seed ^ mix(stream.wrapping_add(mix(chunk).wrapping_mul(u64::from(chunk > 0)))));
         let (index, seed) = ((index % Self::CHUNK) as u32, mixed as u32);
-        Self { index, seed, shuffled: shuffled(index, seed), set: 0, round: 0, values: [0.0; 4], left: 0 }
+        Self { index, seed, shuffled: shuffled(index, seed), set: 0, round: 0, values: [0.0; 4], used: 4 }
     }
 
     /// Length of the sequence in `sobol_burley`.
@@ -44,27 +45,29 @@ impl Sampler {
 
     /// A number in [0, 1).
     pub fn next_1d(&mut self) -> f64 {
-        if self.left == 0 {
-            self.refill();
-        }
-        self.left -= 1;
-        f64::from(self.values[3 - self.left])
+        let [u] = self.next();
+        u
     }
 
     /// Two numbers in [0, 1) that are well distributed together.
     pub fn next_2d(&mut self) -> [f64; 2] {
-        if self.left < 2 {
-            self.refill();
-        }
-        [self.next_1d(), self.next_1d()]
+        self.next()
     }
 
     /// Three numbers in [0, 1) that are well distributed together.
     pub fn next_3d(&mut self) -> [f64; 3] {
-        if self.left < 3 {
+        self.next()
+    }
+
+    /// At most four numbers of one set of dimensions.
+    #[inline]
+    fn next<const N: usize>(&mut self) -> [f64; N] {
+        if self.used + N > 4 {
             self.refill();
         }
-        [self.next_1d(), self.next_1d(), self.next_1d()]
+        let used = self.used;
+        self.used += N;
+        std::array::from_fn(|i| f64::from(self.values[(used + i) % 4]))
     }
 
     /// Past the last dimension set the sets repeat under another seed: deep bounces stay independent.
@@ -75,7 +78,7 @@ impl Sampler {
         }
         self.values = values(self.shuffled, self.set, self.seed_of_round());
         self.set += 1;
-        self.left = 4;
+        self.used = 0;
     }
 
     fn seed_of_round(&self) -> u32 {

@@ -13,10 +13,11 @@ use crate::backlight::Backlight;
 use crate::exact_sun::ExactSuns;
 use crate::guide::{GuideAt, Rates};
 use crate::light::power_heuristic;
-use crate::material::{Arrival, Flight, Material, Scattering, Smooth, SmoothSample};
+use crate::material::{Arrival, Flight, Lobes, Material, Scattering, Smooth, SmoothSample, WardLobes};
 use crate::shapes::Ray;
 use crate::world::{Facing, Seen};
 use crate::{RenderOptions, World};
+use direct::Receiver;
 use patches::Tie;
 use path::{Departure, Path};
 use sunpeak_core::{Frame, Rgb, Sampler, Vec3, luminance};
@@ -71,10 +72,9 @@ impl<'w> Integrator<'w> {
     /// Irradiance [W/m²] on the front of a surface element.
     pub fn irradiance(&self, point: Vec3, normal: Vec3, sampler: &mut Sampler) -> Rgb {
         let arrival = Arrival::new(point, normal, -normal);
-        let scattering =
-            Scattering { smooth: Smooth::Sensor(Frame::from_normal(normal)), ..Scattering::BLACK };
-        let guide = guide_of(self.world, &scattering.smooth, point);
-        let sensor = Met::of_lobes(&arrival, &scattering, guide.as_ref());
+        let smooth = Smooth::Sensor(Frame::from_normal(normal));
+        let guide = guide_of(self.world, &smooth, point);
+        let sensor = Met::of_lobes(&arrival, &smooth, guide.as_ref());
         let ray = Ray::new(point, -normal);
         let mut path = Path::from_camera(ray, f64::INFINITY, self.world.inside_at(&ray));
         let mut branches = Vec::new();
@@ -112,8 +112,7 @@ impl<'w> Integrator<'w> {
                         let direction = path.ray.direction;
                         let arrival = Arrival::new(path.ray.at(distance), -direction, direction);
                         let smooth = Smooth::Phase(air.phase(direction));
-                        let scattering = Scattering { smooth, ..Scattering::BLACK };
-                        let met = Met::of_lobes(&arrival, &scattering, None);
+                        let met = Met::of_lobes(&arrival, &smooth, None);
                         path.travel(distance);
                         let receiver = self.receiver(path, &met);
                         sum += path.throughput * self.direct(path, &met, &receiver, sampler);
@@ -127,6 +126,17 @@ impl<'w> Integrator<'w> {
             let Some(hit) = hit else {
                 return sum + path.throughput * self.light_from_infinity(path);
             };
+            if let Some((arrival, lobes)) = self.world.plain(path.way(), &hit, &path.ray) {
+                path.travel(hit.t);
+                let guide = self.world.guide.as_ref().map(|guide| guide.at(arrival.point));
+                let met = Met::plain(hit.object, &arrival, &lobes, guide.as_ref());
+                let (found, goes_on) = self.vertex(path, &met, branches, tie, sampler);
+                sum += found;
+                if !goes_on {
+                    return sum;
+                }
+                continue;
+            }
             let object = self.world.object(&hit);
             let view = path.is_view();
             let mut arrival = self.world.arrival_after(path.way(), &hit, &path.ray);
@@ -146,32 +156,59 @@ impl<'w> Integrator<'w> {
                     if let Some(chain) = met.split_straight(path) {
                         branches.push(chain);
                     }
-                    if met.smooth_share() > 0.0 {
-                        let receiver = self.receiver(path, &met);
-                        sum += path.throughput * self.direct_from_suns(path, &met, &receiver, sampler);
-                        if met.backlight.is_some() && !path.is_view() {
-                            // Most of the shade's light is known; the rest, seldom looked for, counts the more.
-                            if sampler.next_1d() >= CORRECTED {
-                                return sum;
-                            }
-                            path.throughput /= CORRECTED;
-                        }
-                        sum += path.throughput * self.direct_from_others(&met, &receiver, sampler);
-                        sum += path.throughput * self.light_of_patches(&met, &receiver, tie, sampler);
-                    }
-                    if !self.go_on(path, &met, branches, sampler) || !survives(path, sampler) {
+                    let (found, goes_on) = self.vertex(path, &met, branches, tie, sampler);
+                    sum += found;
+                    if !goes_on {
                         return sum;
                     }
-                    // Only with a path that goes on: it finds in the mean what is taken off here.
-                    sum -= path.take_known();
                 }
             }
         }
         sum
     }
 
+    /// The light that a surface scatters back along the path from emitters, and whether the path goes on from there.
+    fn vertex<L: Lobes>(
+        &self,
+        path: &mut Path,
+        met: &Met<L>,
+        branches: &mut Vec<Path>,
+        tie: &Tie<'w>,
+        sampler: &mut Sampler,
+    ) -> (Rgb, bool) {
+        let mut sum = Rgb::ZERO;
+        if met.smooth_share > 0.0 {
+            let receiver = Receiver::new(met, met.guided(path), self.is_last(path), &path.inside);
+            sum += path.throughput * self.direct_from_suns(path, met, &receiver, sampler);
+            if met.backlight().is_some() && !path.is_view() {
+                // Most of the shade's light is known; the rest, seldom looked for, counts the more.
+                if sampler.next_1d() >= CORRECTED {
+                    return (sum, false);
+                }
+                path.throughput /= CORRECTED;
+            }
+            sum += path.throughput * self.direct_from_others(met, &receiver, sampler);
+            sum += path.throughput * self.light_of_patches(met, &receiver, tie, sampler);
+        }
+        if !self.go_on(path, met, branches, sampler) || !survives(path, sampler) {
+            return (sum, false);
+        }
+        // Only with a path that goes on: it finds in the mean what is taken off here.
+        if path.is_known {
+            sum -= path.take_known();
+        }
+        (sum, true)
+    }
+
     /// Choose one of the ways on; `false` if the path ends here.
-    fn go_on(&self, path: &mut Path, met: &Met, branches: &mut Vec<Path>, sampler: &mut Sampler) -> bool {
+    fn go_on<L: Lobes>(
+        &self,
+        path: &mut Path,
+        met: &Met<L>,
+        branches: &mut Vec<Path>,
+        sampler: &mut Sampler,
+    ) -> bool {
+        let Some(scattering) = met.others() else { return self.scatter(path, met, branches, sampler) };
         let [straight, mirrored, refracted, smooth] = met.shares;
         let whole = straight + mirrored + refracted + smooth;
         if whole <= 0.0 {
@@ -183,11 +220,11 @@ impl<'w> Integrator<'w> {
         }
         let choice = sampler.next_1d() * whole;
         if choice < straight {
-            met.go_straight(path, whole / straight);
+            met.go_straight(path, scattering, whole / straight);
         } else if choice < straight + mirrored {
-            path.mirror(met.arrival, met.scattering.mirrored * (whole / mirrored), met.is_flat);
+            path.mirror(met.arrival, scattering.mirrored * (whole / mirrored), met.is_flat);
         } else if choice < straight + mirrored + refracted {
-            let [first, second] = met.scattering.refracted;
+            let [first, second] = scattering.refracted;
             let of_first = first.map_or(0.0, |(_, share)| luminance(share));
             let is_first = choice - straight - mirrored < of_first;
             let Some((direction, share)) = (if is_first { first } else { second }) else { return false };
@@ -200,8 +237,14 @@ impl<'w> Integrator<'w> {
 
     /// Go on in directions drawn from the smooth lobes, and where the guide points: the first time each way, the others as
     /// `branches`, later one way of all.
-    fn scatter(&self, path: &mut Path, met: &Met, branches: &mut Vec<Path>, sampler: &mut Sampler) -> bool {
-        let smooth = &met.scattering.smooth;
+    fn scatter<L: Lobes>(
+        &self,
+        path: &mut Path,
+        met: &Met<L>,
+        branches: &mut Vec<Path>,
+        sampler: &mut Sampler,
+    ) -> bool {
+        let smooth = met.lobes;
         let Some((guide, rates)) = met.guided(path) else {
             return smooth.draw(sampler).is_some_and(|sample| self.leave(path, met, &sample, sampler));
         };
@@ -240,11 +283,18 @@ impl<'w> Integrator<'w> {
     }
 
     /// Leave a vertex in a drawn direction; `false` if that leads nowhere.
-    fn leave(&self, path: &mut Path, met: &Met, sample: &SmoothSample, sampler: &mut Sampler) -> bool {
-        if !met.arrival.agrees_on(sample.direction) {
+    #[inline(always)]
+    fn leave<L: Lobes>(
+        &self,
+        path: &mut Path,
+        met: &Met<L>,
+        sample: &SmoothSample,
+        sampler: &mut Sampler,
+    ) -> bool {
+        if !met.agrees_on(sample.direction) {
             return false;
         }
-        let share = met.smooth_share();
+        let share = met.smooth_share;
         let mut weight = sample.weight.total();
         let mut glossy = sample.weight.glossy;
         if weight == Rgb::ZERO {
@@ -266,7 +316,7 @@ impl<'w> Integrator<'w> {
             };
             path.bounces += u32::from(is_diffuse);
         }
-        let point = met.arrival.point + met.scattering.smooth.offset(sample.direction);
+        let point = met.arrival.point + met.lobes.offset(sample.direction);
         let departure = Departure {
             point,
             pdf: sample.pdf * share,
@@ -274,7 +324,7 @@ impl<'w> Integrator<'w> {
             is_tied: self.is_tied(met),
         };
         let mut known = Rgb::ZERO;
-        if let Some(backlight) = met.backlight {
+        if let Some(backlight) = met.backlight() {
             known = self.known_light(backlight, sample, share) * glossy
                 / weight.max(Rgb::splat(f64::MIN_POSITIVE));
         }
@@ -297,8 +347,8 @@ impl<'w> Integrator<'w> {
 
 /// A direction that the lobes or the guide have drawn, weighed by the density of all that could have drawn it (Veach 1997,
 /// section 9.2: balance heuristic).
-fn mixed(met: &Met, guide: &GuideAt, rates: &Rates, direction: Vec3) -> Option<SmoothSample> {
-    let smooth = &met.scattering.smooth;
+fn mixed<L: Lobes>(met: &Met<L>, guide: &GuideAt, rates: &Rates, direction: Vec3) -> Option<SmoothSample> {
+    let smooth = met.lobes;
     let (value, own) = smooth.evaluate_with_pdf(direction);
     let pdf = rates.own * own + guide.pdf(rates, direction);
     let cosine = direction.dot(met.arrival.normal).abs();
@@ -308,14 +358,19 @@ fn mixed(met: &Met, guide: &GuideAt, rates: &Rates, direction: Vec3) -> Option<S
 }
 
 /// A surface that a path has met.
-struct Met<'a, 'w> {
+struct Met<'a, 'w, L> {
     arrival: &'a Arrival,
-    /// `None` for a sensor.
+    /// The smooth lobes.
+    lobes: &'a L,
+    /// What else the surface does; `None` where it has lobes and nothing else.
+    scattering: Option<&'a Scattering<'w>>,
+    /// `None` for a sensor and for air, and where the lobes are plain.
     material: Option<&'w Material>,
     is_flat: bool,
-    scattering: &'a Scattering<'w>,
     /// Luminous weights of the ways on: straight, mirrored, refracted, smooth.
     shares: [f64; 4],
+    /// Chance that a path goes on by the smooth lobes.
+    smooth_share: f64,
     /// The far field behind it.
     backlight: Option<&'w Backlight>,
     /// What it is a point of; `None` for a sensor and for air.
@@ -324,7 +379,7 @@ struct Met<'a, 'w> {
     guide: Option<&'a GuideAt<'w>>,
 }
 
-impl<'a, 'w> Met<'a, 'w> {
+impl<'a, 'w> Met<'a, 'w, Smooth<'w>> {
     fn new(
         world: &'w World,
         hit: &Hit,
@@ -341,31 +396,59 @@ impl<'a, 'w> Met<'a, 'w> {
             _ => None,
         };
         Self {
+            scattering: Some(scattering),
             material: Some(material),
             is_flat: matches!(world.object(hit).facing, Facing::Flat(_)),
             shares,
+            smooth_share: share_of_last(&shares),
             backlight,
             object: Some(hit.object),
-            ..Self::of_lobes(arrival, scattering, guide)
+            ..Self::of_lobes(arrival, &scattering.smooth, guide)
         }
     }
+}
 
-    /// A point that has smooth lobes and nothing else: of air, or a sensor.
-    fn of_lobes(
+impl<'a, 'w> Met<'a, 'w, WardLobes<'w>> {
+    /// A point of an object that is plain.
+    fn plain(
+        object: u32,
         arrival: &'a Arrival,
-        scattering: &'a Scattering<'w>,
+        lobes: &'a WardLobes<'w>,
         guide: Option<&'a GuideAt<'w>>,
     ) -> Self {
+        Self { object: Some(object), ..Self::of_lobes(arrival, lobes, guide) }
+    }
+}
+
+impl<'a, 'w, L: Lobes> Met<'a, 'w, L> {
+    /// A point that has smooth lobes and nothing else: of air, or a sensor.
+    fn of_lobes(arrival: &'a Arrival, lobes: &'a L, guide: Option<&'a GuideAt<'w>>) -> Self {
         Self {
             arrival,
+            lobes,
+            scattering: None,
             material: None,
             is_flat: true,
-            scattering,
             shares: [0.0, 0.0, 0.0, 1.0],
+            smooth_share: 1.0,
             backlight: None,
             object: None,
             guide,
         }
+    }
+
+    /// What else than its lobes it has.
+    fn others(&self) -> Option<&'a Scattering<'w>> {
+        if L::ARE_PLAIN { None } else { self.scattering }
+    }
+
+    fn backlight(&self) -> Option<&'w Backlight> {
+        if L::ARE_PLAIN { None } else { self.backlight }
+    }
+
+    /// Is a direction on the same side of the surface as it lies and as its normal is bent?
+    fn agrees_on(&self, direction: Vec3) -> bool {
+        L::ARE_PLAIN || self.arrival.agrees_on(direction)
     }
 
     /// The guide, and how many directions it is asked for here.
@@ -377,18 +460,20 @@ impl<'a, 'w> Met<'a, 'w> {
     /// The straight chain of a path that something else happens to as well, where it is not left to chance: from the camera, and
     /// from a shade to the far field that is known behind it.
     fn split_straight(&mut self, path: &Path) -> Option<Path> {
+        let scattering = self.scattering?;
         let [straight, rest @ ..] = &mut self.shares;
         if !(path.is_view() || path.is_known) || *straight <= 0.0 || *rest == [0.0; 3] {
             return None;
         }
         *straight = 0.0;
+        self.smooth_share = share_of_last(&self.shares);
         let mut chain = *path;
-        self.go_straight(&mut chain, 1.0);
+        self.go_straight(&mut chain, scattering, 1.0);
         Some(chain)
     }
 
-    fn go_straight(&self, path: &mut Path, weight: f64) {
-        path.go_straight(self.straight_origin(), self.scattering.straight * weight);
+    fn go_straight(&self, path: &mut Path, scattering: &Scattering, weight: f64) {
+        path.go_straight(self.straight_origin(), scattering.straight * weight);
         path.is_past_peak |= matches!(self.material, Some(Material::Table(_)));
     }
 
@@ -410,11 +495,15 @@ impl<'a, 'w> Met<'a, 'w> {
             _ => self.arrival.point,
         }
     }
+}
 
-    /// Chance that a path goes on by the smooth lobes.
-    fn smooth_share(&self) -> f64 {
-        if self.shares[3] > 0.0 { self.shares[3] / self.shares.iter().sum::<f64>() } else { 0.0 }
+/// The last weight's part of all.
+fn share_of_last(weights: &[f64; 4]) -> f64 {
+    let [others @ .., last] = weights;
+    if *others == [0.0; 3] && *last > 0.0 {
+        return 1.0;
     }
+    if *last > 0.0 { last / weights.iter().sum::<f64>() } else { 0.0 }
 }
 
 /// The guide, where it helps these lobes.

@@ -109,7 +109,7 @@ impl SunPatches {
         let start = Triangle::sample([u, v], self.portals[portal].0);
         let target = Target::sun(*sun, &sample);
         let (end, object) = end_of(world, start, &target, -sample.direction)?;
-        let transmitted = world.transmitted(&Ray::new(end, sample.direction), &target, Inside::default());
+        let transmitted = world.transmitted(&Ray::new(end, sample.direction), &target, &Inside::default());
         let density = self.density(*sun, end, sample.direction);
         (!transmitted.is_blocked()).then_some(SunRay {
             sample,

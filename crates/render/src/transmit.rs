@@ -87,9 +87,9 @@ enum Pass<'w> {
 
 impl World {
     /// Share of the light that comes through from the target to a place that is in these volumes.
-    pub(crate) fn transmitted(&self, ray: &Ray, target: &Target, inside: Inside) -> Transmitted {
+    pub(crate) fn transmitted(&self, ray: &Ray, target: &Target, inside: &Inside) -> Transmitted {
         if self.has_volumes {
-            return self.followed(*ray, target, inside);
+            return self.followed(*ray, target, *inside);
         }
         let mut layers = Layers::default();
         let mut result = Some(Transmitted::CLEAR);
@@ -108,7 +108,7 @@ impl World {
             };
             result.is_some_and(|r| !r.is_blocked())
         });
-        result.unwrap_or_else(|| self.followed(*ray, target, inside))
+        result.unwrap_or_else(|| self.followed(*ray, target, *inside))
     }
 
     /// The same, surface after surface, with refraction, mist and antimatter.

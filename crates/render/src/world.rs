@@ -9,7 +9,7 @@ use crate::backlight::Backlights;
 use crate::guide::Guide;
 use crate::light::{DistantSources, Lamps};
 use crate::material::{
-    Air, Alternate, Arrival, Emitter, EmitterKind, Inside, Material, MaterialId, Prism, fault_of,
+    Air, Alternate, Arrival, Emitter, EmitterKind, Inside, Material, MaterialId, Prism, WardLobes, fault_of,
     fault_of_orientation,
 };
 use crate::shapes::{COINCIDENT, MeshSurface, Ray};
@@ -54,6 +54,8 @@ pub(crate) struct Object {
     pub material: MaterialId,
     /// Does it let nothing pass straight, wherever it is met ([`Material::is_wall`])?
     pub is_wall: bool,
+    /// Has it plain lobes and nothing else ([`crate::material::WardMaterial::plain`]), and is it flat?
+    pub is_plain: bool,
     pub facing: Facing,
     /// Index among the lamps.
     pub lamp: Option<u32>,
@@ -105,6 +107,21 @@ impl World {
 
     pub(crate) fn material(&self, id: MaterialId) -> &Material {
         &self.materials[id.0 as usize]
+    }
+
+    /// Where a ray has arrived at an object that is plain, and its lobes there. There is nothing more to be told: such an object is no
+    /// boundary, and no pattern tints it.
+    pub(crate) fn plain(&self, way: [f64; 2], hit: &Hit, ray: &Ray) -> Option<(Arrival, WardLobes<'_>)> {
+        let object = self.object(hit);
+        let Facing::Flat(normal) = object.facing else { return None };
+        if !object.is_plain || self.has_volumes {
+            return None;
+        }
+        let Material::Ward(ward) = self.material(object.material) else { return None };
+        let [distance, travelled] = way.map(|way| way + hit.t);
+        let arrival = Arrival { distance, travelled, ..Arrival::new(ray.at(hit.t), normal, ray.direction) };
+        let lobes = ward.plain()?.at(&arrival);
+        Some((arrival, lobes))
     }
 
     pub(crate) fn arrival(&self, hit: &Hit, ray: &Ray) -> Arrival {

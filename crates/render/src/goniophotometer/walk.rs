@@ -2,7 +2,7 @@
 
 use super::cell::{Cell, Next};
 use crate::World;
-use crate::material::{Arrival, Flight, Inside, Material, Scattering, Smooth};
+use crate::material::{Arrival, Flight, Inside, Lobes, Material, Scattering, Smooth};
 use crate::shapes::Ray;
 use crate::world::Seen;
 use sunpeak_core::{Rgb, Sampler, Vec3, luminance};

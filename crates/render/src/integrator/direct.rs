@@ -2,10 +2,9 @@
 
 use super::{Integrator, Met, path::Path};
 use crate::accel::Hit;
-use crate::backlight::Backlight;
 use crate::guide::{GuideAt, Rates};
 use crate::light::{LightSample, at_infinity, power_heuristic};
-use crate::material::{Arrival, Emitter, Inside, Smooth, SmoothValue, reflect};
+use crate::material::{Arrival, Emitter, Inside, Lobes, Smooth, SmoothValue, reflect};
 use crate::shapes::Ray;
 use crate::transmit::{Target, Transmitted};
 use crate::world::{Facing, Object};
@@ -18,27 +17,37 @@ const ALL_REFLECTED_SUNS: usize = 4;
 
 impl Integrator<'_> {
     /// Light from emitters that the smooth lobes scatter back along the path.
-    pub(super) fn direct(&self, path: &Path, met: &Met, receiver: &Receiver, sampler: &mut Sampler) -> Rgb {
+    pub(super) fn direct<L: Lobes>(
+        &self,
+        path: &Path,
+        met: &Met<L>,
+        receiver: &Receiver<L>,
+        sampler: &mut Sampler,
+    ) -> Rgb {
         self.direct_from_suns(path, met, receiver, sampler) + self.direct_from_others(met, receiver, sampler)
     }
 
-    pub(super) fn receiver<'a, 'w>(&self, path: &Path, met: &'a Met<'a, 'w>) -> Receiver<'a, 'w> {
-        Receiver::new(met, met.guided(path), self.is_last(path), path.inside)
+    pub(super) fn receiver<'a, 'w, L: Lobes>(
+        &self,
+        path: &'a Path,
+        met: &'a Met<'a, 'w, L>,
+    ) -> Receiver<'a, 'w, L> {
+        Receiver::new(met, met.guided(path), self.is_last(path), &path.inside)
     }
 
     /// The part from suns, and what a shade gives off in the light of a far field.
-    pub(super) fn direct_from_suns(
+    pub(super) fn direct_from_suns<L: Lobes>(
         &self,
         path: &Path,
-        met: &Met,
-        receiver: &Receiver,
+        met: &Met<L>,
+        receiver: &Receiver<L>,
         sampler: &mut Sampler,
     ) -> Rgb {
-        let mut sum = match (&met.scattering.smooth, met.backlight) {
-            (Smooth::Table(lobes), Some(backlight)) => lobes.backlit(backlight),
+        let mut sum = match (met.backlight(), met.others().map(|scattering| &scattering.smooth)) {
+            (Some(backlight), Some(Smooth::Table(lobes))) => lobes.backlit(backlight),
             _ => Rgb::ZERO,
         };
-        let one_sided = receiver.smooth.one_sided();
+        let one_sided = receiver.met.lobes.one_sided();
         for &sun in self.world.distant.suns() {
             // Random numbers are for suns that light: of a plane surface the same ones in all samples.
             if one_sided.is_some_and(|normal| self.world.distant.get(sun).cone.is_behind(normal)) {
@@ -59,7 +68,12 @@ impl Integrator<'_> {
     }
 
     /// The part from sky, ground and lamps, less what of it is known.
-    pub(super) fn direct_from_others(&self, met: &Met, receiver: &Receiver, sampler: &mut Sampler) -> Rgb {
+    pub(super) fn direct_from_others<L: Lobes>(
+        &self,
+        met: &Met<L>,
+        receiver: &Receiver<L>,
+        sampler: &mut Sampler,
+    ) -> Rgb {
         let mut sum = Rgb::ZERO;
         if self.world.distant.has_dome()
             && let Some(sample) = self.world.distant.sample_dome(sampler.next_2d())
@@ -80,16 +94,16 @@ impl Integrator<'_> {
     }
 
     /// May no diffuse bounce follow?
-    fn is_last(&self, path: &Path) -> bool {
+    pub(super) fn is_last(&self, path: &Path) -> bool {
         self.limits.max_bounces.is_some_and(|limit| path.bounces >= limit)
     }
 
-    fn received(&self, receiver: &Receiver, sample: &LightSample, target: &Target) -> Rgb {
+    fn received<L: Lobes>(&self, receiver: &Receiver<L>, sample: &LightSample, target: &Target) -> Rgb {
         let value = receiver.smooth_value(sample);
         if value.total() == Rgb::ZERO || sample.light.is_none() {
             return Rgb::ZERO;
         }
-        if !receiver.arrival.agrees_on(sample.direction) {
+        if !receiver.met.agrees_on(sample.direction) {
             return Rgb::ZERO;
         }
         let ray = Ray::new(receiver.origin(sample.direction), sample.direction);
@@ -98,14 +112,14 @@ impl Integrator<'_> {
     }
 
     /// The same where it is known what comes through.
-    pub(super) fn received_through(
+    pub(super) fn received_through<L: Lobes>(
         &self,
-        receiver: &Receiver,
+        receiver: &Receiver<L>,
         sample: &LightSample,
         value: &SmoothValue,
         transmitted: &Transmitted,
     ) -> Rgb {
-        let is_known = receiver.backlight.is_some() && sample.is_dome;
+        let is_known = receiver.met.backlight().is_some() && sample.is_dome;
         if transmitted.is_blocked() && !is_known {
             return Rgb::ZERO;
         }
@@ -114,9 +128,9 @@ impl Integrator<'_> {
         if transmitted.is_blocked() || radiance == Rgb::ZERO {
             return -known;
         }
-        let finds =
-            !transmitted.only_by_shadow_rays && (!sample.is_direct || receiver.smooth.samples_find_sources());
-        let other = if finds { receiver.share * receiver.pdf(sample.direction) } else { 0.0 };
+        let finds = !transmitted.only_by_shadow_rays
+            && (!sample.is_direct || receiver.met.lobes.samples_find_sources());
+        let other = if finds { receiver.met.smooth_share * receiver.pdf(sample.direction) } else { 0.0 };
         let weight = power_heuristic(sample.pdf, other);
         // Past the last bounce no sampled path finds what a diffuse lobe gets from a light source; from the sky it gets none.
         let diffuse_weight = match (receiver.is_last, sample.is_direct) {
@@ -129,24 +143,24 @@ impl Integrator<'_> {
     }
 
     /// What the sample would bring in the far field, which the shade's radiance holds already.
-    fn known_dome_light(
+    fn known_dome_light<L: Lobes>(
         &self,
-        receiver: &Receiver,
+        receiver: &Receiver<L>,
         sample: &LightSample,
         radiance: Rgb,
         value: &SmoothValue,
     ) -> Rgb {
-        let Some(backlight) = receiver.backlight.filter(|_| sample.is_dome) else { return Rgb::ZERO };
+        let Some(backlight) = receiver.met.backlight().filter(|_| sample.is_dome) else { return Rgb::ZERO };
         let field = backlight.field(self.world, sample.direction, radiance);
         if field == Rgb::ZERO {
             return field;
         }
-        let weight = power_heuristic(sample.pdf, receiver.share * receiver.pdf(sample.direction));
+        let weight = power_heuristic(sample.pdf, receiver.met.smooth_share * receiver.pdf(sample.direction));
         value.glossy * field * (weight * receiver.cosine(sample.direction) / sample.pdf)
     }
 
     /// Suns reflected by planar mirrors: Radiance's virtual sources. Sampled paths leave them out.
-    fn suns_in_mirrors(&self, receiver: &Receiver, sampler: &mut Sampler) -> Rgb {
+    fn suns_in_mirrors<L: Lobes>(&self, receiver: &Receiver<L>, sampler: &mut Sampler) -> Rgb {
         let (suns, mirrors) = (self.world.distant.suns(), &self.world.mirrors);
         let pairs = suns.len() * mirrors.len();
         let pair = |i: usize| (suns[i / mirrors.len()], mirrors[i % mirrors.len()]);
@@ -157,7 +171,12 @@ impl Integrator<'_> {
         self.sun_in_mirror(receiver, pair(chosen), sampler.next_2d()) * pairs as f64
     }
 
-    fn sun_in_mirror(&self, receiver: &Receiver, (sun, mirror): (usize, u32), u: [f64; 2]) -> Rgb {
+    fn sun_in_mirror<L: Lobes>(
+        &self,
+        receiver: &Receiver<L>,
+        (sun, mirror): (usize, u32),
+        u: [f64; 2],
+    ) -> Rgb {
         let world = self.world;
         let Some(sample) = world.distant.sample_sun(sun, u) else { return Rgb::ZERO };
         let Facing::Flat(normal) = world.objects[mirror as usize].facing else { return Rgb::ZERO };
@@ -176,7 +195,7 @@ impl Integrator<'_> {
             return Rgb::ZERO;
         }
         let onwards = Ray::new(ray.at(hit), sample.direction);
-        let to_sun = world.transmitted(&onwards, &Target::sun(sun, &sample), world.inside_at(&onwards));
+        let to_sun = world.transmitted(&onwards, &Target::sun(sun, &sample), &world.inside_at(&onwards));
         let reflectance = world.mirror_reflectance(&Hit { t: hit, object: mirror }, &ray);
         let factor = receiver.cosine(ray.direction) / sample.pdf;
         value.total()
@@ -188,7 +207,7 @@ impl Integrator<'_> {
     }
 
     /// Suns that prisms send in another direction: virtual sources too.
-    fn suns_through_prisms(&self, receiver: &Receiver, sampler: &mut Sampler) -> Rgb {
+    fn suns_through_prisms<L: Lobes>(&self, receiver: &Receiver<L>, sampler: &mut Sampler) -> Rgb {
         let mut sum = Rgb::ZERO;
         for &sun in self.world.distant.suns() {
             for &(object, place) in &self.world.prisms {
@@ -200,9 +219,9 @@ impl Integrator<'_> {
         sum
     }
 
-    fn sun_through_prism(
+    fn sun_through_prism<L: Lobes>(
         &self,
-        receiver: &Receiver,
+        receiver: &Receiver<L>,
         sun: usize,
         (object, place): (u32, Vec3),
         way: usize,
@@ -221,7 +240,7 @@ impl Integrator<'_> {
         let ray = Ray::new(receiver.origin(direction), direction);
         let Some(hit) = world.accel.crossing_of(&ray, object) else { return Rgb::ZERO };
         let value = receiver.smooth_value(&LightSample { direction, ..sample });
-        if value.total() == Rgb::ZERO || !receiver.arrival.agrees_on(direction) {
+        if value.total() == Rgb::ZERO || !receiver.met.agrees_on(direction) {
             return Rgb::ZERO;
         }
         let met = RayState::new(ray.at(hit), normal, direction, hit);
@@ -234,7 +253,7 @@ impl Integrator<'_> {
             return Rgb::ZERO;
         }
         let onwards = Ray::new(ray.at(hit), onwards);
-        let to_sun = world.transmitted(&onwards, &Target::sun(sun, &sample), world.inside_at(&onwards));
+        let to_sun = world.transmitted(&onwards, &Target::sun(sun, &sample), &world.inside_at(&onwards));
         let factor = share * receiver.cosine(direction) / sample.pdf;
         value.total() * world.distant.radiance(&sample) * to_prism.share * to_sun.share * factor
     }
@@ -309,42 +328,36 @@ fn weight(path: &Path, emitter: &Emitter, distance: f64, shadow_pdf: impl Fn() -
 }
 
 /// Where light is received.
-pub(super) struct Receiver<'a, 'w> {
-    arrival: &'a Arrival,
-    pub smooth: &'a Smooth<'w>,
-    /// Chance that a path goes on by the smooth lobes.
-    pub share: f64,
+pub(super) struct Receiver<'a, 'w, L> {
+    pub met: &'a Met<'a, 'w, L>,
     /// May no diffuse bounce follow?
     is_last: bool,
     guide: Option<(&'a GuideAt<'w>, Rates)>,
     /// Mist and antimatter around.
-    inside: Inside,
-    /// What is known of the light behind.
-    backlight: Option<&'a Backlight>,
+    inside: &'a Inside,
 }
 
-impl<'a, 'w> Receiver<'a, 'w> {
+impl<'a, 'w, L: Lobes> Receiver<'a, 'w, L> {
     pub fn new(
-        met: &'a Met<'a, 'w>,
+        met: &'a Met<'a, 'w, L>,
         guide: Option<(&'a GuideAt<'w>, Rates)>,
         is_last: bool,
-        inside: Inside,
+        inside: &'a Inside,
     ) -> Self {
-        let (arrival, smooth, backlight) = (met.arrival, &met.scattering.smooth, met.backlight);
-        Self { arrival, smooth, share: met.smooth_share(), is_last, guide, inside, backlight }
+        Self { met, is_last, guide, inside }
     }
 
     pub fn smooth_value(&self, sample: &LightSample) -> SmoothValue {
         if sample.is_direct {
-            self.smooth.toward_source(sample.direction, sample.solid_angle)
+            self.met.lobes.toward_source(sample.direction, sample.solid_angle)
         } else {
-            self.smooth.evaluate(sample.direction)
+            self.met.lobes.evaluate(sample.direction)
         }
     }
 
     /// Density [1/sr] with which paths go on in this direction, if they go on by the smooth lobes.
     pub fn pdf(&self, direction: Vec3) -> f64 {
-        self.pdf_with(self.smooth.pdf(direction), direction)
+        self.pdf_with(self.met.lobes.pdf(direction), direction)
     }
 
     /// The same where the lobes' own density is known.
@@ -356,11 +369,11 @@ impl<'a, 'w> Receiver<'a, 'w> {
     }
 
     pub fn cosine(&self, direction: Vec3) -> f64 {
-        self.smooth.cosine(direction, self.arrival.normal)
+        self.met.lobes.cosine(direction, self.met.arrival.normal)
     }
 
     /// Where light from this direction arrives.
     fn origin(&self, direction: Vec3) -> Vec3 {
-        self.arrival.point + self.smooth.offset(direction)
+        self.met.arrival.point + self.met.lobes.offset(direction)
     }
 }

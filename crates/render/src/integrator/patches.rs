@@ -6,7 +6,7 @@ use super::{Integrator, Met};
 use crate::accel::Hit;
 use crate::guide::GuideAt;
 use crate::light::{LightSample, power_heuristic};
-use crate::material::Inside;
+use crate::material::{Inside, Lobes};
 use crate::shapes::Ray;
 use crate::sunlit::{Drawn, SunPatches, SunRay};
 use crate::transmit::Target;
@@ -33,7 +33,7 @@ impl<'w> Integrator<'w> {
     }
 
     /// Are paths that leave this point tied to patches of sun?
-    pub(super) fn is_tied(&self, met: &Met) -> bool {
+    pub(super) fn is_tied<L: Lobes>(&self, met: &Met<L>) -> bool {
         met.guide.is_some() && self.patches().is_some()
     }
 
@@ -43,10 +43,10 @@ impl<'w> Integrator<'w> {
     }
 
     /// Sunlight that one more surface scatters to this one.
-    pub(super) fn light_of_patches(
+    pub(super) fn light_of_patches<L: Lobes>(
         &self,
-        met: &Met,
-        receiver: &Receiver,
+        met: &Met<L>,
+        receiver: &Receiver<L>,
         tie: &Tie<'w>,
         sampler: &mut Sampler,
     ) -> Rgb {
@@ -63,10 +63,10 @@ impl<'w> Integrator<'w> {
         let way = lit.ray.end - origin;
         let distance = way.length();
         let direction = way / distance;
-        if distance <= 0.0 || !met.arrival.agrees_on(direction) {
+        if distance <= 0.0 || !met.agrees_on(direction) {
             return Rgb::ZERO;
         }
-        let (value, own) = receiver.smooth.evaluate_with_pdf(direction);
+        let (value, own) = receiver.met.lobes.evaluate_with_pdf(direction);
         let value = value.total() * receiver.cosine(direction);
         if value == Rgb::ZERO {
             return Rgb::ZERO;
@@ -75,7 +75,8 @@ impl<'w> Integrator<'w> {
         let mut arrival = self.world.arrival_after([0.0, met.arrival.travelled], &hit, &ray);
         let mut choose = || sampler.next_1d();
         // There are no volumes where there are patches.
-        let seen = self.world.meet(hit.object, &mut arrival, false, &mut Inside::default(), &mut choose);
+        let mut inside = Inside::default();
+        let seen = self.world.meet(hit.object, &mut arrival, false, &mut inside, &mut choose);
         let Seen::Surface(material) = seen else { return Rgb::ZERO };
         let facing = arrival.flat_normal.dot(direction).abs();
         let lit_cosine = arrival.flat_normal.dot(lit.ray.sample.direction).abs();
@@ -83,28 +84,28 @@ impl<'w> Integrator<'w> {
         let scattering = material.scatter(&arrival, false);
         let guide = lit.guide.as_ref().filter(|_| scattering.smooth.can_be_guided());
         let other = Met::new(self.world, &hit, material, &arrival, &scattering, guide);
-        if pdf.is_nan() || pdf <= 0.0 || other.smooth_share() <= 0.0 {
+        if pdf.is_nan() || pdf <= 0.0 || other.smooth_share <= 0.0 {
             return Rgb::ZERO;
         }
         let rates = guide.map(|guide| (guide, guide.one_direction()));
-        let sunlit = Receiver::new(&other, rates, false, Inside::default());
+        let sunlit = Receiver::new(&other, rates, false, &inside);
         let towards_sun = sunlit.smooth_value(&lit.ray.sample);
         if towards_sun.total() == Rgb::ZERO
-            || !other.arrival.agrees_on(lit.ray.sample.direction)
+            || !other.agrees_on(lit.ray.sample.direction)
             || !self.world.is_clear(&ray, &Target::point(distance, lit.ray.object))
         {
             return Rgb::ZERO;
         }
         let found = self.received_through(&sunlit, &lit.ray.sample, &towards_sun, &lit.ray.transmitted);
-        let weight = power_heuristic(pdf, receiver.share * receiver.pdf_with(own, direction));
+        let weight = power_heuristic(pdf, receiver.met.smooth_share * receiver.pdf_with(own, direction));
         value * found * (weight / pdf)
     }
 
     /// Weight of a sun's light at a surface that a path has met, against ties to this point from where the path comes from.
-    pub(super) fn weight_against_ties(
+    pub(super) fn weight_against_ties<L: Lobes>(
         &self,
         path: &Path,
-        met: &Met,
+        met: &Met<L>,
         sun: usize,
         sample: &LightSample,
     ) -> f64 {

@@ -24,6 +24,10 @@ pub(crate) struct Distant {
     pub cone: Cone,
     /// What it emits.
     pub emitter: Emitter,
+    /// A sample of it, but for direction and density.
+    sample: LightSample,
+    /// Does it light, and is it no sun?
+    is_dome: bool,
     /// Which surface of the scene it is.
     pub surface: u32,
 }
@@ -31,7 +35,20 @@ pub(crate) struct Distant {
 impl Distant {
     /// Around the unit vector `direction`, of this full angle [deg].
     pub fn new(direction: Vec3, angle_deg: f64, emitter: Emitter, surface: u32) -> Self {
-        Self { cone: Cone::new(direction, angle_deg), emitter, surface }
+        let cone = Cone::new(direction, angle_deg);
+        let is_small = angle_deg < SMALL_SOURCE_DEG;
+        let sample = LightSample {
+            direction,
+            distance: f64::INFINITY,
+            light: Light::OfSource(0),
+            pdf: 0.0,
+            solid_angle: cone.solid_angle(),
+            is_direct: emitter.is_direct(f64::INFINITY),
+            is_dome: !is_small,
+            object: None,
+            is_hidden_by_illum: emitter.is_hidden_by_illum(),
+        };
+        Self { cone, sample, is_dome: !is_small && emitter.illuminates(), emitter, surface }
     }
 
     /// Unit vector towards its centre.
@@ -68,10 +85,13 @@ impl DistantSources {
     /// In the scene's order.
     pub fn new(mut sources: Vec<Distant>) -> Self {
         sources.sort_by_key(Distant::rank);
+        for (index, source) in sources.iter_mut().enumerate() {
+            source.sample.light = Light::OfSource(index);
+        }
         let lights = |s: &Distant| s.emitter.illuminates();
         let suns = (0..sources.len()).filter(|&i| sources[i].is_small() && lights(&sources[i])).collect();
         let mut all = Self { sources, suns, dome: None };
-        let has_dome = all.sources.iter().any(|s| !s.is_small() && lights(s));
+        let has_dome = all.sources.iter().any(|s| s.is_dome);
         all.dome = has_dome.then(|| Dome::new(|d| all.dome_radiance(d))).flatten();
         all
     }
@@ -98,9 +118,7 @@ impl DistantSources {
     /// Radiance of all that lights and is no sun.
     pub fn dome_radiance(&self, direction: Vec3) -> Rgb {
         match self.seen(direction).map(|i| &self.sources[i]) {
-            Some(s) if !s.is_small() && s.emitter.illuminates() => {
-                s.emitter.radiance(&at_infinity(direction))
-            }
+            Some(s) if s.is_dome => s.emitter.radiance(&at_infinity(direction)),
             _ => Rgb::ZERO,
         }
     }
@@ -124,17 +142,15 @@ impl DistantSources {
     pub fn sample_sun(&self, index: usize, u: [f64; 2]) -> Option<LightSample> {
         let sun = &self.sources[index];
         let direction = sun.cone.sample(u);
-        (self.seen(direction) == Some(index))
-            .then(|| self.light_sample(index, direction, 1.0 / sun.cone.solid_angle()))
+        let is_hidden = self.sources[..index].iter().any(|source| source.cone.contains(direction));
+        (!is_hidden).then(|| self.light_sample(index, direction, 1.0 / sun.cone.solid_angle()))
     }
 
     /// A direction into the sky, in proportion to its brightness.
     pub fn sample_dome(&self, u: [f64; 2]) -> Option<LightSample> {
         let (direction, pdf) = self.dome.as_ref()?.sample(u);
         let index = self.seen(direction)?;
-        let source = &self.sources[index];
-        let is_useful = !source.is_small() && source.emitter.illuminates();
-        is_useful.then(|| self.light_sample(index, direction, pdf))
+        self.sources[index].is_dome.then(|| self.light_sample(index, direction, pdf))
     }
 
     /// What the emitter of a sample sends here if nothing is in between.
@@ -146,18 +162,7 @@ impl DistantSources {
     }
 
     fn light_sample(&self, index: usize, direction: Vec3, pdf: f64) -> LightSample {
-        let source = &self.sources[index];
-        LightSample {
-            direction,
-            distance: f64::INFINITY,
-            light: Light::OfSource(index),
-            pdf,
-            solid_angle: source.cone.solid_angle(),
-            is_direct: source.emitter.is_direct(f64::INFINITY),
-            is_dome: !source.is_small(),
-            object: None,
-            is_hidden_by_illum: source.emitter.is_hidden_by_illum(),
-        }
+        LightSample { direction, pdf, ..self.sources[index].sample }
     }
 }
 

@@ -17,11 +17,11 @@ pub(crate) use dielectric::Dielectric;
 pub(crate) use emitter::{Emitter, EmitterKind};
 pub(crate) use glass::Glass;
 pub(crate) use prism::Prism;
-pub(crate) use smooth::{Smooth, SmoothSample, SmoothValue};
+pub(crate) use smooth::{Lobes, Smooth, SmoothSample, SmoothValue};
 pub(crate) use table::{Table, stands_for_geometry};
 pub(crate) use varying::{Mixture, Step, Varying, fault_of, modulation_of, tint_of};
 pub(crate) use volume::{Air, Antimatter, Flight, Inside, Mist};
-pub(crate) use ward::{Modifiers, WardMaterial, WgmdMaterial};
+pub(crate) use ward::{Modifiers, WardLobes, WardMaterial, WgmdMaterial};
 
 use sunpeak_core::{Error, Rgb, Vec3};
 use sunpeak_scene::Orientation;

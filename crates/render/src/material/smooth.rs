@@ -45,7 +45,7 @@ pub(crate) enum Smooth<'w> {
     /// A receiver for irradiance: scatters all it gets with value 1, at its front.
     Sensor(Frame),
     /// Diffuse and Gaussian lobes.
-    Ward(WardLobes),
+    Ward(WardLobes<'w>),
     /// Such lobes, each in a frame of its own.
     Wgmd(Box<WgmdLobes>),
     /// Ashikhmin's and Shirley's lobes.
@@ -56,6 +56,45 @@ pub(crate) enum Smooth<'w> {
     Function(Box<FunctionLobes<'w>>),
     /// Air that scatters; there is no surface, and no cosine.
     Phase(Phase),
+}
+
+/// What smooth lobes are asked for at a vertex of a path; directions are unit vectors in world axes, away from the surface.
+pub(crate) trait Lobes {
+    /// Are they those of [`WardMaterial::plain`](super::WardMaterial::plain), so that there is nothing else at the vertex?
+    const ARE_PLAIN: bool;
+
+    /// Value [1/sr] towards a direction.
+    fn evaluate(&self, direction: Vec3) -> SmoothValue;
+
+    /// Density [1/sr] of [`Self::draw`].
+    fn pdf(&self, direction: Vec3) -> f64;
+
+    /// Value and density in one.
+    fn evaluate_with_pdf(&self, direction: Vec3) -> (SmoothValue, f64);
+
+    /// As `evaluate`, towards a light source of this solid angle [sr]. Some materials treat light sources apart, as Radiance does.
+    fn toward_source(&self, direction: Vec3, solid_angle: f64) -> SmoothValue;
+
+    /// What light sources that a path meets in this direction are multiplied with; see [`Self::toward_source`].
+    fn source_factor(&self, direction: Vec3) -> f64;
+
+    /// May sampled directions find light sources? Not where `toward_source` is a rule of its own.
+    fn samples_find_sources(&self) -> bool;
+
+    /// The normal of the side on which all that is scattered stays; `None` if that is not known.
+    fn one_sided(&self) -> Option<Vec3>;
+
+    /// Cosine to a surface's normal, by which light counts.
+    fn cosine(&self, direction: Vec3, normal: Vec3) -> f64;
+
+    /// How far from the surface light in this direction starts: the other side of what a table with thickness stands for.
+    fn offset(&self, direction: Vec3) -> Vec3;
+
+    /// The direction of [`Self::draw`] by a number that chooses the lobe and a point of the square; it may have no weight.
+    fn sample_direction(&self, choice: f64, u: [f64; 2], sampler: &mut Sampler) -> Option<Vec3>;
+
+    /// Draw a direction; `None` if the draw fell where nothing is scattered.
+    fn draw(&self, sampler: &mut Sampler) -> Option<SmoothSample>;
 }
 
 impl Smooth<'_> {
@@ -73,124 +112,12 @@ impl Smooth<'_> {
         }
     }
 
-    /// Value [1/sr] towards a direction (world axes, away from the surface).
-    pub fn evaluate(&self, direction: Vec3) -> SmoothValue {
-        match self {
-            Self::None => SmoothValue::default(),
-            Self::Sensor(frame) => {
-                let front = if direction.dot(frame.z) > 0.0 { Rgb::ONE } else { Rgb::ZERO };
-                SmoothValue { diffuse: front, glossy: Rgb::ZERO }
-            }
-            Self::Ward(lobes) => lobes.evaluate(direction),
-            Self::Wgmd(lobes) => lobes.evaluate(direction),
-            Self::Ashikhmin(lobes) => lobes.evaluate(direction),
-            Self::Table(lobes) => lobes.evaluate(direction),
-            Self::Function(lobes) => lobes.evaluate(direction),
-            Self::Phase(phase) => SmoothValue { diffuse: phase.evaluate(direction), glossy: Rgb::ZERO },
-        }
-    }
-
-    /// The normal of the side on which all that is scattered stays; `None` if that is not known.
-    pub fn one_sided(&self) -> Option<Vec3> {
-        match self {
-            Self::Sensor(frame) => Some(frame.z),
-            Self::Ward(lobes) => lobes.one_sided(),
-            _ => None,
-        }
-    }
-
-    /// Cosine to a surface's normal, by which light counts.
-    pub fn cosine(&self, direction: Vec3, normal: Vec3) -> f64 {
-        match self {
-            Self::Phase(_) => 1.0,
-            _ => direction.dot(normal).abs(),
-        }
-    }
-
-    /// How far from the surface light in this direction starts: the other side of what a table with thickness stands for.
-    pub fn offset(&self, direction: Vec3) -> Vec3 {
-        match self {
-            Self::Table(lobes) => lobes.offset(direction),
-            _ => Vec3::ZERO,
-        }
-    }
-
-    /// As `evaluate`, towards a light source of this solid angle [sr]. Some materials treat light sources apart, as Radiance does.
-    pub fn toward_source(&self, direction: Vec3, solid_angle: f64) -> SmoothValue {
-        match self {
-            Self::Ward(lobes) => lobes.evaluate(direction).scaled(lobes.source_factor(direction)),
-            Self::Wgmd(lobes) => lobes.toward_source(direction),
-            Self::Table(lobes) => lobes.toward_source(direction, solid_angle),
-            Self::Function(lobes) => lobes.toward_source(direction, solid_angle),
-            _ => self.evaluate(direction),
-        }
-    }
-
-    /// What light sources that a path meets in this direction are multiplied with; see [`Self::toward_source`].
-    pub fn source_factor(&self, direction: Vec3) -> f64 {
-        match self {
-            Self::Ward(lobes) => lobes.source_factor(direction),
-            Self::Wgmd(lobes) => lobes.source_factor(direction),
-            Self::Table(lobes) if lobes.has_source_rule() => 0.0,
-            Self::Function(_) => 0.0,
-            _ => 1.0,
-        }
-    }
-
     /// Are directions best drawn with a guide's help? Not where a table knows better.
     pub fn can_be_guided(&self) -> bool {
         matches!(
             self,
             Self::Sensor(_) | Self::Ward(_) | Self::Wgmd(_) | Self::Ashikhmin(_) | Self::Function(_)
         )
-    }
-
-    /// May sampled directions find light sources? Not where `toward_source` is a rule of its own.
-    pub fn samples_find_sources(&self) -> bool {
-        match self {
-            Self::Table(lobes) => !lobes.has_source_rule(),
-            Self::Wgmd(lobes) => lobes.samples_find_sources(),
-            Self::Function(_) => false,
-            _ => true,
-        }
-    }
-
-    /// Density [1/sr] of `sample`.
-    pub fn pdf(&self, direction: Vec3) -> f64 {
-        match self {
-            Self::None => 0.0,
-            Self::Sensor(frame) => direction.dot(frame.z).max(0.0) * FRAC_1_PI,
-            Self::Ward(lobes) => lobes.pdf(direction),
-            Self::Wgmd(lobes) => lobes.pdf(direction),
-            Self::Ashikhmin(lobes) => lobes.pdf(direction),
-            Self::Table(lobes) => lobes.pdf(direction),
-            Self::Function(lobes) => lobes.pdf(direction),
-            Self::Phase(phase) => phase.pdf(direction),
-        }
-    }
-
-    /// Value and density in one.
-    pub fn evaluate_with_pdf(&self, direction: Vec3) -> (SmoothValue, f64) {
-        match self {
-            Self::Ward(lobes) => lobes.evaluate_with_pdf(direction),
-            _ => (self.evaluate(direction), self.pdf(direction)),
-        }
-    }
-
-    /// The direction of [`Self::sample`] alone; it may have no weight.
-    pub fn sample_direction(&self, choice: f64, u: [f64; 2], sampler: &mut Sampler) -> Option<Vec3> {
-        match self {
-            Self::Ward(lobes) => lobes.sample_direction(choice, u),
-            _ => self.sample(choice, u, sampler).map(|sample| sample.direction),
-        }
-    }
-
-    /// Draw a direction; `None` as for [`Self::sample`].
-    pub fn draw(&self, sampler: &mut Sampler) -> Option<SmoothSample> {
-        // A sensor has one lobe.
-        let choice = if matches!(self, Self::Sensor(_)) { 0.0 } else { sampler.next_1d() };
-        let u = sampler.next_2d();
-        self.sample(choice, u, sampler)
     }
 
     /// Draw a direction by a number that chooses the lobe and a point of the square; `None` if the draw fell where nothing is
@@ -212,5 +139,159 @@ impl Smooth<'_> {
             Self::Function(lobes) => lobes.sample(choice, u),
             Self::Phase(phase) => Some(phase.sample(choice, u)),
         }
+    }
+}
+
+impl Lobes for Smooth<'_> {
+    const ARE_PLAIN: bool = false;
+
+    fn evaluate(&self, direction: Vec3) -> SmoothValue {
+        match self {
+            Self::None => SmoothValue::default(),
+            Self::Sensor(frame) => {
+                let front = if direction.dot(frame.z) > 0.0 { Rgb::ONE } else { Rgb::ZERO };
+                SmoothValue { diffuse: front, glossy: Rgb::ZERO }
+            }
+            Self::Ward(lobes) => lobes.evaluate(direction),
+            Self::Wgmd(lobes) => lobes.evaluate(direction),
+            Self::Ashikhmin(lobes) => lobes.evaluate(direction),
+            Self::Table(lobes) => lobes.evaluate(direction),
+            Self::Function(lobes) => lobes.evaluate(direction),
+            Self::Phase(phase) => SmoothValue { diffuse: phase.evaluate(direction), glossy: Rgb::ZERO },
+        }
+    }
+
+    fn one_sided(&self) -> Option<Vec3> {
+        match self {
+            Self::Sensor(frame) => Some(frame.z),
+            Self::Ward(lobes) => lobes.one_sided(),
+            _ => None,
+        }
+    }
+
+    fn cosine(&self, direction: Vec3, normal: Vec3) -> f64 {
+        match self {
+            Self::Phase(_) => 1.0,
+            _ => direction.dot(normal).abs(),
+        }
+    }
+
+    fn offset(&self, direction: Vec3) -> Vec3 {
+        match self {
+            Self::Table(lobes) => lobes.offset(direction),
+            _ => Vec3::ZERO,
+        }
+    }
+
+    fn toward_source(&self, direction: Vec3, solid_angle: f64) -> SmoothValue {
+        match self {
+            Self::Ward(lobes) => lobes.toward_source(direction, solid_angle),
+            Self::Wgmd(lobes) => lobes.toward_source(direction),
+            Self::Table(lobes) => lobes.toward_source(direction, solid_angle),
+            Self::Function(lobes) => lobes.toward_source(direction, solid_angle),
+            _ => self.evaluate(direction),
+        }
+    }
+
+    fn source_factor(&self, direction: Vec3) -> f64 {
+        match self {
+            Self::Ward(lobes) => lobes.source_factor(direction),
+            Self::Wgmd(lobes) => lobes.source_factor(direction),
+            Self::Table(lobes) if lobes.has_source_rule() => 0.0,
+            Self::Function(_) => 0.0,
+            _ => 1.0,
+        }
+    }
+
+    fn samples_find_sources(&self) -> bool {
+        match self {
+            Self::Table(lobes) => !lobes.has_source_rule(),
+            Self::Wgmd(lobes) => lobes.samples_find_sources(),
+            Self::Function(_) => false,
+            _ => true,
+        }
+    }
+
+    fn pdf(&self, direction: Vec3) -> f64 {
+        match self {
+            Self::None => 0.0,
+            Self::Sensor(frame) => direction.dot(frame.z).max(0.0) * FRAC_1_PI,
+            Self::Ward(lobes) => lobes.pdf(direction),
+            Self::Wgmd(lobes) => lobes.pdf(direction),
+            Self::Ashikhmin(lobes) => lobes.pdf(direction),
+            Self::Table(lobes) => lobes.pdf(direction),
+            Self::Function(lobes) => lobes.pdf(direction),
+            Self::Phase(phase) => phase.pdf(direction),
+        }
+    }
+
+    fn evaluate_with_pdf(&self, direction: Vec3) -> (SmoothValue, f64) {
+        match self {
+            Self::Ward(lobes) => lobes.evaluate_with_pdf(direction),
+            _ => (self.evaluate(direction), self.pdf(direction)),
+        }
+    }
+
+    fn sample_direction(&self, choice: f64, u: [f64; 2], sampler: &mut Sampler) -> Option<Vec3> {
+        match self {
+            Self::Ward(lobes) => lobes.sample_direction(choice, u),
+            _ => self.sample(choice, u, sampler).map(|sample| sample.direction),
+        }
+    }
+
+    fn draw(&self, sampler: &mut Sampler) -> Option<SmoothSample> {
+        // A sensor has one lobe.
+        let choice = if matches!(self, Self::Sensor(_)) { 0.0 } else { sampler.next_1d() };
+        let u = sampler.next_2d();
+        self.sample(choice, u, sampler)
+    }
+}
+
+impl Lobes for WardLobes<'_> {
+    const ARE_PLAIN: bool = true;
+
+    fn evaluate(&self, direction: Vec3) -> SmoothValue {
+        self.evaluate_with_pdf(direction).0
+    }
+
+    fn pdf(&self, direction: Vec3) -> f64 {
+        self.evaluate_with_pdf(direction).1
+    }
+
+    fn evaluate_with_pdf(&self, direction: Vec3) -> (SmoothValue, f64) {
+        self.evaluate_with_pdf(direction)
+    }
+
+    fn toward_source(&self, direction: Vec3, _solid_angle: f64) -> SmoothValue {
+        self.evaluate(direction).scaled(self.source_factor(direction))
+    }
+
+    fn source_factor(&self, direction: Vec3) -> f64 {
+        self.source_factor(direction)
+    }
+
+    fn samples_find_sources(&self) -> bool {
+        true
+    }
+
+    fn one_sided(&self) -> Option<Vec3> {
+        self.one_sided()
+    }
+
+    fn cosine(&self, direction: Vec3, normal: Vec3) -> f64 {
+        direction.dot(normal).abs()
+    }
+
+    fn offset(&self, _direction: Vec3) -> Vec3 {
+        Vec3::ZERO
+    }
+
+    fn sample_direction(&self, choice: f64, u: [f64; 2], _sampler: &mut Sampler) -> Option<Vec3> {
+        self.sample_direction(choice, u)
+    }
+
+    fn draw(&self, sampler: &mut Sampler) -> Option<SmoothSample> {
+        let choice = sampler.next_1d();
+        self.sample(choice, sampler.next_2d())
     }
 }

@@ -6,14 +6,14 @@
 //!   it takes is missing in the others.
 
 use super::{
-    FRESNEL_THRESHOLD, SMALLEST_COSINE, WardLobes, fresnel_rise, oriented,
+    FRESNEL_THRESHOLD, Held, Place, SMALLEST_COSINE, Strengths, WardLobes, fresnel_rise, oriented,
     transmission::{Bound, bound_at},
 };
 use crate::material::{
     Arrival, Scattering, Smooth, SmoothSample, SmoothValue, Step, fault_of, modulation_of,
 };
 use std::sync::Arc;
-use sunpeak_core::{Error, Frame, Rgb, Vec3, luminance};
+use sunpeak_core::{Error, Rgb, Vec3, luminance};
 use sunpeak_scene::Field;
 
 /// Shares and roughnesses up to this are none (Radiance, `FTINY`).
@@ -184,15 +184,15 @@ impl WgmdMaterial {
             Some(mirror) if mirror.is_delta() => {
                 scattering.refracted[0] = Some((mirror.arrival.mirrored(), mirror.share))
             }
-            Some(rough) => lobes.add_specular(&rough, orientation, |lobes| lobes.reflection = rough.share),
+            Some(rough) => lobes.add_specular(&rough, orientation, |_| [rough.share, Rgb::ZERO]),
             None => {}
         }
         match transmission {
             Some(clear) if clear.is_delta() => scattering.straight = clear.share * left,
-            Some(rough) => lobes.add_specular(&rough, orientation, |lobes| {
-                let bound = self.bound.as_ref().map(|bound| bound.at(lobes.w_in));
-                let bound = bound.unwrap_or_else(|| bound_at(lobes.w_in, lobes.alpha));
-                lobes.transmission = rough.share * (left * bound);
+            Some(rough) => lobes.add_specular(&rough, orientation, |at| {
+                let bound = self.bound.as_ref().map(|bound| bound.at(at.local_in()));
+                let bound = bound.unwrap_or_else(|| bound_at(at.local_in(), at.alpha));
+                [Rgb::ZERO, rough.share * (left * bound)]
             }),
             None => {}
         }
@@ -205,9 +205,9 @@ impl WgmdMaterial {
 }
 
 /// The smooth lobes at one point, up to four, each with its own normal.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct WgmdLobes {
-    parts: Vec<WardLobes>,
+    parts: Vec<WardLobes<'static>>,
     /// Bent, and as the surface lies, on the ray's side.
     normal: Vec3,
     flat_normal: Vec3,
@@ -218,28 +218,29 @@ pub(crate) struct WgmdLobes {
 impl WgmdLobes {
     /// Side 0 is reflected, 1 transmitted.
     fn add_diffuse(&mut self, seen: &Arrival, share: Rgb, side: usize) {
-        let mut part = WardLobes::black(Frame::from_normal(seen.facing_normal()), seen.direction);
-        part.diffuse[side] = (share * seen.tint).max(Rgb::ZERO);
-        self.add(part);
+        let mut diffuse = [Rgb::ZERO; 2];
+        diffuse[side] = (share * seen.tint).max(Rgb::ZERO);
+        let at = Place::new(seen.facing_normal(), None, [0.0; 2], seen.direction);
+        self.add(at, Strengths::new(diffuse, Rgb::ZERO, Rgb::ZERO, false));
     }
 
+    /// `shares`: rough reflectance and transmittance at a place.
     fn add_specular(
         &mut self,
         specular: &Specular,
         orientation: Vec3,
-        set_share: impl FnOnce(&mut WardLobes),
+        shares: impl FnOnce(&Place) -> [Rgb; 2],
     ) {
         let seen = &specular.arrival;
-        let (frame, alpha) = oriented(seen.facing_normal(), orientation, specular.alpha);
-        let mut part = WardLobes { alpha, ..WardLobes::black(frame, seen.direction) };
-        set_share(&mut part);
-        self.add(part);
+        let (x, alpha) = oriented(seen.facing_normal(), orientation, specular.alpha);
+        let at = Place::new(seen.facing_normal(), x, alpha, seen.direction);
+        let [reflection, transmission] = shares(&at);
+        self.add(at, Strengths::new([Rgb::ZERO; 2], reflection, transmission, false));
     }
 
-    fn add(&mut self, part: WardLobes) {
-        let part = part.weighed();
-        if part.albedo() > 0.0 {
-            self.parts.push(part);
+    fn add(&mut self, at: Place, strengths: Strengths) {
+        if strengths.albedo > 0.0 {
+            self.parts.push(WardLobes { at, strengths: Held::Own(Box::new(strengths)) });
         }
     }
 
@@ -253,7 +254,7 @@ impl WgmdLobes {
         let cosine = direction.dot(self.normal).abs();
         let is_reflected = direction.dot(self.flat_normal) > 0.0;
         for part in &self.parts {
-            let own = direction.dot(part.frame.z);
+            let own = direction.dot(part.at.normal);
             if cosine > 0.0 && (own > 0.0) == is_reflected {
                 let value = part.evaluate(direction).scaled(own.abs() / cosine);
                 sum.diffuse += value.diffuse;
@@ -275,7 +276,7 @@ impl WgmdLobes {
 
     /// Of what a path samples one factor is for all parts: where they differ, shadow rays have to find the sources.
     pub fn samples_find_sources(&self) -> bool {
-        self.fresnel.is_none() || self.parts.iter().all(|part| !part.is_rough())
+        self.fresnel.is_none() || self.parts.iter().all(|part| !part.at.is_rough())
     }
 
     pub fn source_factor(&self, direction: Vec3) -> f64 {
@@ -301,7 +302,7 @@ impl WgmdLobes {
         for part in &self.parts {
             let weight = part.albedo();
             if choice < weight {
-                return part.sample_local(choice / weight, u).map(|w| part.frame.to_world(w));
+                return part.sample_direction(choice / weight, u);
             }
             choice -= weight;
         }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::material::Lobes;
 use crate::testing::{chi_square_of_sampler, hemispherical_sum};
 use std::f64::consts::PI;
 use sunpeak_core::Sampler;
