@@ -99,10 +99,15 @@ impl GuideAt<'_> {
 
     /// Density [1/sr] of the guided directions at these rates.
     pub fn pdf(&self, rates: &Rates, direction: Vec3) -> f64 {
+        let towards = rates.shades * self.shades.pdf(direction);
+        if self.guide.suns.is_empty() { towards } else { towards + rates.suns * self.suns_pdf(direction) }
+    }
+
+    /// Density [1/sr] of the directions against the suns: apart, since most rooms have none of these.
+    #[inline(never)]
+    fn suns_pdf(&self, direction: Vec3) -> f64 {
         let suns = &self.guide.suns;
-        let against: f64 = suns.iter().map(|sun| sun.pdf(direction)).sum();
-        let against = if suns.is_empty() { 0.0 } else { rates.suns * against / suns.len() as f64 };
-        against + rates.shades * self.shades.pdf(direction)
+        suns.iter().map(|sun| sun.pdf(direction)).sum::<f64>() / suns.len() as f64
     }
 }
 

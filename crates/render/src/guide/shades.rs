@@ -14,24 +14,25 @@ const SMALL_SR: f64 = 1e-4;
 pub(super) struct ShadesAt<'g> {
     quads: &'g [Quad],
     point: Vec3,
-    /// Of each shade [sr]; in single precision, since every diffuse vertex writes them all.
-    solid_angles: [f32; MAX_TRIANGLES],
+    /// Of each shade [sr].
+    solid_angles: [f64; MAX_TRIANGLES],
     whole: f64,
 }
 
 impl<'g> ShadesAt<'g> {
     /// Of at most [`MAX_TRIANGLES`] shades.
+    #[inline]
     pub fn new(quads: &'g [Quad], point: Vec3) -> Self {
-        let mut solid_angles = [0.0; MAX_TRIANGLES];
+        let (mut solid_angles, mut whole) = ([0.0; MAX_TRIANGLES], 0.0);
         for (solid_angle, quad) in solid_angles.iter_mut().zip(quads) {
-            *solid_angle = quad.solid_angle(point) as f32;
+            *solid_angle = quad.solid_angle(point);
+            whole += *solid_angle;
         }
-        let whole = solid_angles[..quads.len()].iter().map(|&s| f64::from(s)).sum();
         Self { quads, point, solid_angles, whole }
     }
 
     fn shades(&self) -> impl Iterator<Item = (&Quad, f64)> {
-        self.quads.iter().zip(&self.solid_angles).map(|(quad, &solid_angle)| (quad, f64::from(solid_angle)))
+        self.quads.iter().zip(self.solid_angles.iter().copied())
     }
 
     /// A direction; `None` where no shade can be seen.
@@ -41,12 +42,17 @@ impl<'g> ShadesAt<'g> {
             left -= solid_angle;
             left < 0.0
         })?;
+        if quad.is_rectangle() && solid_angle >= SMALL_SR {
+            return Some(quad.sample_rectangle(self.point, solid_angle, [u, v]));
+        }
         // Where in its solid angle, from 0 to 1: that chooses the half.
-        let at = (1.0 + left / solid_angle).max(0.0);
+        self.sample_halves(quad, solid_angle, [(1.0 + left / solid_angle).max(0.0), u, v])
+    }
+
+    fn sample_halves(&self, quad: &Quad, solid_angle: f64, [at, u, v]: [f64; 3]) -> Option<Vec3> {
         let halves = quad.halves();
         if solid_angle < SMALL_SR {
-            let first = halves[0].area() / quad.area_vector().length();
-            let half = if at < first { &halves[0] } else { &halves[1] };
+            let half = if at * quad.area() < halves[0].area() { &halves[0] } else { &halves[1] };
             return Triangle::sample([u, v], half.0.map(|corner| corner - self.point)).try_normalize();
         }
         let first = halves[0].solid_angle(self.point);
@@ -56,20 +62,19 @@ impl<'g> ShadesAt<'g> {
     }
 
     /// Density [1/sr].
+    #[inline]
     pub fn pdf(&self, direction: Vec3) -> f64 {
         if self.whole <= 0.0 {
             return 0.0;
         }
-        let share = |(quad, solid_angle): (&Quad, f64)| {
-            let Some(t) = quad.crossing(self.point, direction).filter(|_| solid_angle > 0.0) else {
-                return 0.0;
-            };
-            if solid_angle < SMALL_SR {
-                return solid_angle * t * t / quad.area_vector().dot(direction).abs();
+        let mut sum = 0.0;
+        for (quad, solid_angle) in self.shades() {
+            if let Some(t) = quad.crossing(self.point, direction).filter(|_| solid_angle > 0.0) {
+                let is_small = solid_angle < SMALL_SR;
+                sum += if is_small { solid_angle * t * t / quad.area_across(direction) } else { 1.0 };
             }
-            1.0
-        };
-        self.shades().map(share).sum::<f64>() / self.whole
+        }
+        sum / self.whole
     }
 }
 

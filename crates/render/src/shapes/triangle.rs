@@ -5,7 +5,7 @@
 //! edges belong to both their triangles. So a closest hit never slips through a seam.
 
 use super::{Bounds, Ray};
-use sunpeak_core::Vec3;
+use sunpeak_core::{Vec3, warp};
 
 /// Three corners; the front is where they turn counter-clockwise.
 #[derive(Clone, Copy, Debug)]
@@ -41,18 +41,12 @@ impl Triangle {
         0.5 * (b - a).cross(c - a)
     }
 
-    /// Solid angle [sr] from a point.
+    /// Solid angle [sr] from a point (Van Oosterom and Strackee 1983).
     pub fn solid_angle(&self, point: Vec3) -> f64 {
-        let [x, y] = self.half_solid_angle(point);
-        2.0 * y.atan2(x)
-    }
-
-    /// A complex number whose angle is half of the solid angle from a point (Van Oosterom and Strackee 1983).
-    #[inline(always)]
-    pub fn half_solid_angle(&self, point: Vec3) -> [f64; 2] {
         let [a, b, c] = self.0.map(|corner| corner - point);
         let (la, lb, lc) = (a.length(), b.length(), c.length());
-        [la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb, a.dot(b.cross(c)).abs()]
+        let x = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+        2.0 * warp::angle([x, a.dot(b.cross(c)).abs()])
     }
 
     /// Weights of the corners that make a point of its plane.
@@ -77,7 +71,7 @@ impl Triangle {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sunpeak_core::{Sampler, warp};
+    use sunpeak_core::Sampler;
 
     fn ray(origin: Vec3, direction: Vec3) -> Ray {
         Ray::new(origin, direction.normalize())
