@@ -11,9 +11,9 @@ mod path;
 use crate::accel::Hit;
 use crate::backlight::Backlight;
 use crate::exact_sun::ExactSuns;
-use crate::guide::{GuideAt, Rates};
+use crate::guide::GuideAt;
 use crate::light::power_heuristic;
-use crate::material::{Arrival, Flight, Lobes, Material, Scattering, Smooth, SmoothSample, WardLobes};
+use crate::material::{Arrival, Flight, Lobes, Material, Scattering, Smooth, SmoothSample};
 use crate::shapes::Ray;
 use crate::world::{Facing, Seen};
 use crate::{RenderOptions, World};
@@ -73,7 +73,7 @@ impl<'w> Integrator<'w> {
     pub fn irradiance(&self, point: Vec3, normal: Vec3, sampler: &mut Sampler) -> Rgb {
         let arrival = Arrival::new(point, normal, -normal);
         let smooth = Smooth::Sensor(Frame::from_normal(normal));
-        let guide = guide_of(self.world, &smooth, point);
+        let guide = guide_of(self.world, &smooth, point, true);
         let sensor = Met::of_lobes(&arrival, &smooth, guide.as_ref());
         let ray = Ray::new(point, -normal);
         let mut path = Path::from_camera(ray, f64::INFINITY, self.world.inside_at(&ray));
@@ -126,10 +126,16 @@ impl<'w> Integrator<'w> {
             let Some(hit) = hit else {
                 return sum + path.throughput * self.light_from_infinity(path);
             };
-            if let Some((arrival, lobes)) = self.world.plain(path.way(), &hit, &path.ray) {
+            if let Some((normal, plain)) = self.world.plain(&hit) {
                 path.travel(hit.t);
-                let guide = self.world.guide.as_ref().map(|guide| guide.at(arrival.point));
-                let met = Met::plain(hit.object, &arrival, &lobes, guide.as_ref());
+                let arrival = Arrival::new(path.ray.at(hit.t), normal, path.ray.direction).after(path.way());
+                let lobes = plain.at(&arrival);
+                let seen_from_here;
+                let mut met = Met { object: Some(hit.object), ..Met::of_lobes(&arrival, &lobes, None) };
+                if let Some(guide) = &self.world.guide {
+                    seen_from_here = guide.at(arrival.point, path.is_view());
+                    met.guide = Some(&seen_from_here);
+                }
                 let (found, goes_on) = self.vertex(path, &met, branches, tie, sampler);
                 sum += found;
                 if !goes_on {
@@ -151,7 +157,7 @@ impl<'w> Integrator<'w> {
                 Seen::Surface(material) => {
                     path.absorb(material, &arrival, hit.t);
                     let scattering = material.scatter(&arrival, view);
-                    let guide = guide_of(self.world, &scattering.smooth, arrival.point);
+                    let guide = guide_of(self.world, &scattering.smooth, arrival.point, view);
                     let mut met = Met::new(self.world, &hit, material, &arrival, &scattering, guide.as_ref());
                     if let Some(chain) = met.split_straight(path) {
                         branches.push(chain);
@@ -178,7 +184,7 @@ impl<'w> Integrator<'w> {
     ) -> (Rgb, bool) {
         let mut sum = Rgb::ZERO;
         if met.smooth_share > 0.0 {
-            let receiver = Receiver::new(met, met.guided(path), self.is_last(path), &path.inside);
+            let receiver = Receiver { met, is_last: self.is_last(path), inside: &path.inside };
             sum += path.throughput * self.direct_from_suns(path, met, &receiver, sampler);
             if met.backlight().is_some() && !path.is_view() {
                 // Most of the shade's light is known; the rest, seldom looked for, counts the more.
@@ -245,13 +251,14 @@ impl<'w> Integrator<'w> {
         sampler: &mut Sampler,
     ) -> bool {
         let smooth = met.lobes;
-        let Some((guide, rates)) = met.guided(path) else {
+        let Some(guide) = met.guide else {
             return smooth.draw(sampler).is_some_and(|sample| self.leave(path, met, &sample, sampler));
         };
         let go = |path: &mut Path, direction: Option<Vec3>, sampler: &mut Sampler| {
-            let sample = direction.and_then(|direction| mixed(met, guide, &rates, direction));
+            let sample = direction.and_then(|direction| mixed(met, guide, direction));
             sample.is_some_and(|sample| self.leave(path, met, &sample, sampler))
         };
+        let rates = guide.rates;
         if path.is_view() {
             let mut branch = |direction: Option<Vec3>, path: &mut Path, sampler: &mut Sampler| {
                 let mut other = *path;
@@ -347,10 +354,10 @@ impl<'w> Integrator<'w> {
 
 /// A direction that the lobes or the guide have drawn, weighed by the density of all that could have drawn it (Veach 1997,
 /// section 9.2: balance heuristic).
-fn mixed<L: Lobes>(met: &Met<L>, guide: &GuideAt, rates: &Rates, direction: Vec3) -> Option<SmoothSample> {
+fn mixed<L: Lobes>(met: &Met<L>, guide: &GuideAt, direction: Vec3) -> Option<SmoothSample> {
     let smooth = met.lobes;
     let (value, own) = smooth.evaluate_with_pdf(direction);
-    let pdf = rates.own * own + guide.pdf(rates, direction);
+    let pdf = guide.rates.own * own + guide.pdf(direction);
     let cosine = direction.dot(met.arrival.normal).abs();
     let source_factor = smooth.source_factor(direction);
     let weight = value.scaled(cosine / pdf);
@@ -408,18 +415,6 @@ impl<'a, 'w> Met<'a, 'w, Smooth<'w>> {
     }
 }
 
-impl<'a, 'w> Met<'a, 'w, WardLobes<'w>> {
-    /// A point of an object that is plain.
-    fn plain(
-        object: u32,
-        arrival: &'a Arrival,
-        lobes: &'a WardLobes<'w>,
-        guide: Option<&'a GuideAt<'w>>,
-    ) -> Self {
-        Self { object: Some(object), ..Self::of_lobes(arrival, lobes, guide) }
-    }
-}
-
 impl<'a, 'w, L: Lobes> Met<'a, 'w, L> {
     /// A point that has smooth lobes and nothing else: of air, or a sensor.
     fn of_lobes(arrival: &'a Arrival, lobes: &'a L, guide: Option<&'a GuideAt<'w>>) -> Self {
@@ -449,12 +444,6 @@ impl<'a, 'w, L: Lobes> Met<'a, 'w, L> {
     /// Is a direction on the same side of the surface as it lies and as its normal is bent?
     fn agrees_on(&self, direction: Vec3) -> bool {
         L::ARE_PLAIN || self.arrival.agrees_on(direction)
-    }
-
-    /// The guide, and how many directions it is asked for here.
-    fn guided(&self, path: &Path) -> Option<(&'a GuideAt<'w>, Rates)> {
-        let guide = self.guide?;
-        Some((guide, if path.is_view() { guide.one_each() } else { guide.one_direction() }))
     }
 
     /// The straight chain of a path that something else happens to as well, where it is not left to chance: from the camera, and
@@ -507,8 +496,8 @@ fn share_of_last(weights: &[f64; 4]) -> f64 {
 }
 
 /// The guide, where it helps these lobes.
-fn guide_of<'w>(world: &'w World, smooth: &Smooth, point: Vec3) -> Option<GuideAt<'w>> {
-    world.guide.as_ref().filter(|_| smooth.can_be_guided()).map(|guide| guide.at(point))
+fn guide_of<'w>(world: &'w World, smooth: &Smooth, point: Vec3, each_way: bool) -> Option<GuideAt<'w>> {
+    world.guide.as_ref().filter(|_| smooth.can_be_guided()).map(|guide| guide.at(point, each_way))
 }
 
 /// Russian roulette.

@@ -9,7 +9,7 @@ use crate::backlight::Backlights;
 use crate::guide::Guide;
 use crate::light::{DistantSources, Lamps};
 use crate::material::{
-    Air, Alternate, Arrival, Emitter, EmitterKind, Inside, Material, MaterialId, Prism, WardLobes, fault_of,
+    Air, Alternate, Arrival, Emitter, EmitterKind, Inside, Material, MaterialId, Plain, Prism, fault_of,
     fault_of_orientation,
 };
 use crate::shapes::{COINCIDENT, MeshSurface, Ray};
@@ -54,8 +54,6 @@ pub(crate) struct Object {
     pub material: MaterialId,
     /// Does it let nothing pass straight, wherever it is met ([`Material::is_wall`])?
     pub is_wall: bool,
-    /// Has it plain lobes and nothing else ([`crate::material::WardMaterial::plain`]), and is it flat?
-    pub is_plain: bool,
     pub facing: Facing,
     /// Index among the lamps.
     pub lamp: Option<u32>,
@@ -109,19 +107,13 @@ impl World {
         &self.materials[id.0 as usize]
     }
 
-    /// Where a ray has arrived at an object that is plain, and its lobes there. There is nothing more to be told: such an object is no
-    /// boundary, and no pattern tints it.
-    pub(crate) fn plain(&self, way: [f64; 2], hit: &Hit, ray: &Ray) -> Option<(Arrival, WardLobes<'_>)> {
+    /// The normal and the lobes of an object that is plain. There is nothing more to be told where a ray meets it: it is no boundary of
+    /// a volume, and no pattern tints it.
+    pub(crate) fn plain(&self, hit: &Hit) -> Option<(Vec3, Plain<'_>)> {
         let object = self.object(hit);
         let Facing::Flat(normal) = object.facing else { return None };
-        if !object.is_plain || self.has_volumes {
-            return None;
-        }
         let Material::Ward(ward) = self.material(object.material) else { return None };
-        let [distance, travelled] = way.map(|way| way + hit.t);
-        let arrival = Arrival { distance, travelled, ..Arrival::new(ray.at(hit.t), normal, ray.direction) };
-        let lobes = ward.plain()?.at(&arrival);
-        Some((arrival, lobes))
+        ward.plain().filter(|_| !self.has_volumes).map(|plain| (normal, plain))
     }
 
     pub(crate) fn arrival(&self, hit: &Hit, ray: &Ray) -> Arrival {

@@ -31,6 +31,9 @@ const MAX_SCATTERED_SUNS: usize = 8;
 pub(crate) struct Guide {
     shades: Vec<Quad>,
     suns: Vec<ScatteredSun>,
+    /// One direction each way, and one in all.
+    one_each: Rates,
+    one_in_all: Rates,
 }
 
 /// How many directions of each kind are drawn at a vertex, on average.
@@ -49,6 +52,8 @@ pub(crate) struct Rates {
 pub(crate) struct GuideAt<'g> {
     guide: &'g Guide,
     shades: ShadesAt<'g>,
+    /// How many directions are drawn there.
+    pub rates: &'g Rates,
 }
 
 impl Guide {
@@ -59,33 +64,23 @@ impl Guide {
         if shades.len() > MAX_TRIANGLES {
             shades.clear();
         }
-        (!shades.is_empty() || !suns.is_empty()).then(|| Self { shades: Quad::joined(&shades), suns })
+        let [some_shades, some_suns] =
+            [shades.is_empty(), suns.is_empty()].map(|none| f64::from(u8::from(!none)));
+        let one_each = Rates { own: 1.0, shades: some_shades, suns: some_suns };
+        let (to_shades, against_suns) = (TO_SHADES * some_shades, AGAINST_SUNS * some_suns);
+        let one_in_all = Rates { own: 1.0 - to_shades - against_suns, shades: to_shades, suns: against_suns };
+        let is_some = !shades.is_empty() || !suns.is_empty();
+        is_some.then(|| Self { shades: Quad::joined(&shades), suns, one_each, one_in_all })
     }
 
-    /// As seen from a point.
-    pub fn at(&self, point: Vec3) -> GuideAt<'_> {
-        GuideAt { guide: self, shades: ShadesAt::new(&self.shades, point) }
+    /// As seen from a point, where one direction each way is drawn, or one in all.
+    pub fn at(&self, point: Vec3, each_way: bool) -> GuideAt<'_> {
+        let rates = if each_way { &self.one_each } else { &self.one_in_all };
+        GuideAt { guide: self, shades: ShadesAt::new(&self.shades, point), rates }
     }
 }
 
 impl GuideAt<'_> {
-    /// One direction in all.
-    pub fn one_direction(&self) -> Rates {
-        let shades = if self.guide.shades.is_empty() { 0.0 } else { TO_SHADES };
-        let suns = if self.guide.suns.is_empty() { 0.0 } else { AGAINST_SUNS };
-        Rates { own: 1.0 - shades - suns, shades, suns }
-    }
-
-    /// One direction each way.
-    pub fn one_each(&self) -> Rates {
-        let one_if = |is_there: bool| f64::from(u8::from(is_there));
-        Rates {
-            own: 1.0,
-            shades: one_if(!self.guide.shades.is_empty()),
-            suns: one_if(!self.guide.suns.is_empty()),
-        }
-    }
-
     /// Draw a direction towards a shade.
     pub fn sample_shades(&self, u: [f64; 3]) -> Option<Vec3> {
         self.shades.sample(u)
@@ -97,8 +92,9 @@ impl GuideAt<'_> {
         self.guide.suns.get(at as usize)?.sample([at.fract(), u[1], u[2]])
     }
 
-    /// Density [1/sr] of the guided directions at these rates.
-    pub fn pdf(&self, rates: &Rates, direction: Vec3) -> f64 {
+    /// Density [1/sr] of the guided directions.
+    pub fn pdf(&self, direction: Vec3) -> f64 {
+        let rates = self.rates;
         let towards = rates.shades * self.shades.pdf(direction);
         if self.guide.suns.is_empty() { towards } else { towards + rates.suns * self.suns_pdf(direction) }
     }

@@ -2,7 +2,6 @@
 
 use super::{Integrator, Met, path::Path};
 use crate::accel::Hit;
-use crate::guide::{GuideAt, Rates};
 use crate::light::{LightSample, at_infinity, power_heuristic};
 use crate::material::{Arrival, Emitter, Inside, Lobes, Smooth, SmoothValue, reflect};
 use crate::shapes::Ray;
@@ -32,7 +31,7 @@ impl Integrator<'_> {
         path: &'a Path,
         met: &'a Met<'a, 'w, L>,
     ) -> Receiver<'a, 'w, L> {
-        Receiver::new(met, met.guided(path), self.is_last(path), &path.inside)
+        Receiver { met, is_last: self.is_last(path), inside: &path.inside }
     }
 
     /// The part from suns, and what a shade gives off in the light of a far field.
@@ -331,22 +330,12 @@ fn weight(path: &Path, emitter: &Emitter, distance: f64, shadow_pdf: impl Fn() -
 pub(super) struct Receiver<'a, 'w, L> {
     pub met: &'a Met<'a, 'w, L>,
     /// May no diffuse bounce follow?
-    is_last: bool,
-    guide: Option<(&'a GuideAt<'w>, Rates)>,
+    pub is_last: bool,
     /// Mist and antimatter around.
-    inside: &'a Inside,
+    pub inside: &'a Inside,
 }
 
-impl<'a, 'w, L: Lobes> Receiver<'a, 'w, L> {
-    pub fn new(
-        met: &'a Met<'a, 'w, L>,
-        guide: Option<(&'a GuideAt<'w>, Rates)>,
-        is_last: bool,
-        inside: &'a Inside,
-    ) -> Self {
-        Self { met, is_last, guide, inside }
-    }
-
+impl<L: Lobes> Receiver<'_, '_, L> {
     pub fn smooth_value(&self, sample: &LightSample) -> SmoothValue {
         if sample.is_direct {
             self.met.lobes.toward_source(sample.direction, sample.solid_angle)
@@ -362,8 +351,8 @@ impl<'a, 'w, L: Lobes> Receiver<'a, 'w, L> {
 
     /// The same where the lobes' own density is known.
     pub fn pdf_with(&self, own: f64, direction: Vec3) -> f64 {
-        match &self.guide {
-            Some((guide, rates)) => rates.own * own + guide.pdf(rates, direction),
+        match self.met.guide {
+            Some(guide) => guide.rates.own * own + guide.pdf(direction),
             None => own,
         }
     }

@@ -55,7 +55,7 @@ impl<'w> Integrator<'w> {
         };
         let follow = || {
             let ray = patches.follow(self.world, drawn)?;
-            let guide = self.world.guide.as_ref().map(|guide| guide.at(ray.end));
+            let guide = self.world.guide.as_ref().map(|guide| guide.at(ray.end, false));
             Some(Lit { ray, guide })
         };
         let Some(lit) = tie.lit.get_or_init(follow) else { return Rgb::ZERO };
@@ -87,8 +87,7 @@ impl<'w> Integrator<'w> {
         if pdf.is_nan() || pdf <= 0.0 || other.smooth_share <= 0.0 {
             return Rgb::ZERO;
         }
-        let rates = guide.map(|guide| (guide, guide.one_direction()));
-        let sunlit = Receiver::new(&other, rates, false, &inside);
+        let sunlit = Receiver { met: &other, is_last: false, inside: &inside };
         let towards_sun = sunlit.smooth_value(&lit.ray.sample);
         if towards_sun.total() == Rgb::ZERO
             || !other.agrees_on(lit.ray.sample.direction)

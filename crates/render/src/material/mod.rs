@@ -21,7 +21,7 @@ pub(crate) use smooth::{Lobes, Smooth, SmoothSample, SmoothValue};
 pub(crate) use table::{Table, stands_for_geometry};
 pub(crate) use varying::{Mixture, Step, Varying, fault_of, modulation_of, tint_of};
 pub(crate) use volume::{Air, Antimatter, Flight, Inside, Mist};
-pub(crate) use ward::{Modifiers, WardLobes, WardMaterial, WgmdMaterial};
+pub(crate) use ward::{Modifiers, Plain, WardMaterial, WgmdMaterial};
 
 use sunpeak_core::{Error, Rgb, Vec3};
 use sunpeak_scene::Orientation;
@@ -107,6 +107,11 @@ impl Arrival {
             distance: 0.0,
             travelled: 0.0,
         }
+    }
+
+    /// The same of a ray that has come so far: since it was last scattered, and since the camera [m].
+    pub fn after(self, [distance, travelled]: [f64; 2]) -> Self {
+        Self { distance, travelled, ..self }
     }
 
     /// The same with a smoothed normal. One that looks away from the ray is mirrored to its side (as Radiance does).

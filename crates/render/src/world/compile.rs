@@ -291,10 +291,8 @@ impl<'s> Compiler<'s> {
         }
         self.surfaces.push(self.current);
         self.ranks.push(surface.modifier.map_or(0, |id| id.0 as u32));
-        let made_of = &self.materials[material.0 as usize];
-        let is_plain = matches!(made_of, Material::Ward(ward) if ward.plain().is_some());
-        let (is_wall, is_plain) = (made_of.is_wall(), is_plain && matches!(facing, Facing::Flat(_)));
-        self.objects.push(Object { material, is_wall, is_plain, facing, lamp: None });
+        let is_wall = self.materials[material.0 as usize].is_wall();
+        self.objects.push(Object { material, is_wall, facing, lamp: None });
         Ok(object)
     }
 
