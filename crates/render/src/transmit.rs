@@ -91,23 +91,33 @@ impl World {
         if self.has_volumes {
             return self.followed(*ray, target, *inside);
         }
-        let mut layers = Layers::default();
-        let mut result = Some(Transmitted::CLEAR);
+        let (mut layers, mut result) = (None::<Layers>, Some(Transmitted::CLEAR));
+        let mut is_walled = false;
         self.accel.each_crossing(ray, target.distance * (1.0 - SHORT_OF_TARGET), |hit| {
             if is_target(&hit, target) {
                 return true;
             }
+            // Mostly this is all.
+            if self.object(&hit).is_wall {
+                is_walled = true;
+                return false;
+            }
             result = match (result, self.pass(&hit, ray, target)) {
                 (_, Pass::Straight(share, _)) if share == Rgb::ZERO => Some(Transmitted::BLOCKED),
-                (Some(so_far), Pass::Straight(share, only)) => match layers.add(&hit) {
-                    Layer::New => Some(so_far.times(share, only)),
-                    Layer::Known => Some(so_far),
-                    Layer::Coincident | Layer::TooMany => None,
-                },
+                (Some(so_far), Pass::Straight(share, only)) => {
+                    match layers.get_or_insert_default().add(&hit) {
+                        Layer::New => Some(so_far.times(share, only)),
+                        Layer::Known => Some(so_far),
+                        Layer::Coincident | Layer::TooMany => None,
+                    }
+                }
                 _ => None,
             };
             result.is_some_and(|r| !r.is_blocked())
         });
+        if is_walled {
+            return Transmitted::BLOCKED;
+        }
         result.unwrap_or_else(|| self.followed(*ray, target, *inside))
     }
 
