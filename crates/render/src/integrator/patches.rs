@@ -6,7 +6,7 @@ use super::{Integrator, Met};
 use crate::accel::Hit;
 use crate::guide::GuideAt;
 use crate::light::{LightSample, power_heuristic};
-use crate::material::{Inside, Lobes};
+use crate::material::{Arrival, Inside, Lobes};
 use crate::shapes::Ray;
 use crate::sunlit::{Drawn, SunPatches, SunRay};
 use crate::transmit::Target;
@@ -72,32 +72,50 @@ impl<'w> Integrator<'w> {
             return Rgb::ZERO;
         }
         let (ray, hit) = (Ray::new(origin, direction), Hit { t: distance, object: lit.ray.object });
-        let mut arrival = self.world.arrival_after([0.0, met.arrival.travelled], &hit, &ray);
-        let mut choose = || sampler.next_1d();
-        // There are no volumes where there are patches.
-        let mut inside = Inside::default();
-        let seen = self.world.meet(hit.object, &mut arrival, false, &mut inside, &mut choose);
-        let Seen::Surface(material) = seen else { return Rgb::ZERO };
-        let facing = arrival.flat_normal.dot(direction).abs();
-        let lit_cosine = arrival.flat_normal.dot(lit.ray.sample.direction).abs();
-        let pdf = lit.ray.density * lit_cosine * distance * distance / facing;
-        let scattering = material.scatter(&arrival, false);
-        let guide = lit.guide.as_ref().filter(|_| scattering.smooth.can_be_guided());
-        let other = Met::new(self.world, &hit, material, &arrival, &scattering, guide);
-        if pdf.is_nan() || pdf <= 0.0 || other.smooth_share <= 0.0 {
-            return Rgb::ZERO;
+        let way = [0.0, met.arrival.travelled];
+        let (found, pdf) = if let Some((normal, plain)) = self.world.plain(&hit) {
+            let arrival = Arrival::new(ray.at(hit.t), normal, direction).after(way.map(|way| way + hit.t));
+            let lobes = plain.at(&arrival);
+            self.light_of_lit(lit, &ray, distance, &Met::of_lobes(&arrival, &lobes, lit.guide.as_ref()))
+        } else {
+            let mut arrival = self.world.arrival_after(way, &hit, &ray);
+            let mut choose = || sampler.next_1d();
+            // There are no volumes where there are patches.
+            let mut inside = Inside::default();
+            let seen = self.world.meet(hit.object, &mut arrival, false, &mut inside, &mut choose);
+            let Seen::Surface(material) = seen else { return Rgb::ZERO };
+            let scattering = material.scatter(&arrival, false);
+            let guide = lit.guide.as_ref().filter(|_| scattering.smooth.can_be_guided());
+            let other = Met::new(self.world, &hit, material, &arrival, &scattering, guide);
+            self.light_of_lit(lit, &ray, distance, &other)
+        };
+        if found == Rgb::ZERO {
+            return found;
         }
-        let sunlit = Receiver { met: &other, is_last: false, inside: &inside };
-        let towards_sun = sunlit.smooth_value(&lit.ray.sample);
-        if towards_sun.total() == Rgb::ZERO
-            || !other.agrees_on(lit.ray.sample.direction)
-            || !self.world.is_clear(&ray, &Target::point(distance, lit.ray.object))
-        {
-            return Rgb::ZERO;
-        }
-        let found = self.received_through(&sunlit, &lit.ray.sample, &towards_sun, &lit.ray.transmitted);
         let weight = power_heuristic(pdf, receiver.met.smooth_share * receiver.pdf_with(own, direction));
         value * found * (weight / pdf)
+    }
+
+    /// What the lit surface scatters back along a ray that meets it at a distance, if nothing stands between, and the density [1/sr] of
+    /// meeting it there by a tie.
+    fn light_of_lit<L: Lobes>(&self, lit: &Lit, ray: &Ray, distance: f64, other: &Met<L>) -> (Rgb, f64) {
+        let (arrival, sample) = (other.arrival, &lit.ray.sample);
+        let facing = arrival.flat_normal.dot(ray.direction).abs();
+        let lit_cosine = arrival.flat_normal.dot(sample.direction).abs();
+        let pdf = lit.ray.density * lit_cosine * distance * distance / facing;
+        if pdf.is_nan() || pdf <= 0.0 || other.smooth_share <= 0.0 {
+            return (Rgb::ZERO, pdf);
+        }
+        let inside = Inside::default();
+        let sunlit = Receiver { met: other, is_last: false, inside: &inside };
+        let towards_sun = sunlit.smooth_value(sample);
+        if towards_sun.total() == Rgb::ZERO
+            || !other.agrees_on(sample.direction)
+            || !self.world.is_clear(ray, &Target::point(distance, lit.ray.object))
+        {
+            return (Rgb::ZERO, pdf);
+        }
+        (self.received_through(&sunlit, sample, &towards_sun, &lit.ray.transmitted), pdf)
     }
 
     /// Weight of a sun's light at a surface that a path has met, against ties to this point from where the path comes from.
