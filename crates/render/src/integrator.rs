@@ -380,7 +380,7 @@ struct Met<'a, 'w, L> {
     smooth_share: f64,
     /// The far field behind it.
     backlight: Option<&'w Backlight>,
-    /// What it is a point of; `None` for a sensor and for air.
+    /// What it is a point of, where a path has met it; `None` for a sensor and for air.
     object: Option<u32>,
     /// Where light comes from, if that helps its lobes.
     guide: Option<&'a GuideAt<'w>>,
@@ -416,7 +416,7 @@ impl<'a, 'w> Met<'a, 'w, Smooth<'w>> {
 }
 
 impl<'a, 'w, L: Lobes> Met<'a, 'w, L> {
-    /// A point that has smooth lobes and nothing else: of air, or a sensor.
+    /// A point that has smooth lobes and nothing else: of air, of a sensor, or of a plain surface.
     fn of_lobes(arrival: &'a Arrival, lobes: &'a L, guide: Option<&'a GuideAt<'w>>) -> Self {
         Self {
             arrival,

@@ -9,7 +9,7 @@ mod microfacet;
 mod sheet;
 mod tabulate;
 
-pub use glossy::{Lambert, Phong, Ward, bounded_ward, bounded_ward_lobe};
+pub use glossy::{Lambert, Phong, Ward, bounded_ward_lobe};
 pub use microfacet::{CookTorrance, Ggx};
 pub use sheet::{Glass, Mirror};
 pub use tabulate::tabulate;

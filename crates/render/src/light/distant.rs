@@ -27,7 +27,7 @@ pub(crate) struct Distant {
     /// A sample of it, but for direction and density.
     sample: LightSample,
     /// Does it light, and is it no sun?
-    is_dome: bool,
+    lights_widely: bool,
     /// Which surface of the scene it is.
     pub surface: u32,
 }
@@ -48,7 +48,7 @@ impl Distant {
             object: None,
             is_hidden_by_illum: emitter.is_hidden_by_illum(),
         };
-        Self { cone, sample, is_dome: !is_small && emitter.illuminates(), emitter, surface }
+        Self { cone, sample, lights_widely: !is_small && emitter.illuminates(), emitter, surface }
     }
 
     /// Unit vector towards its centre.
@@ -91,7 +91,7 @@ impl DistantSources {
         let lights = |s: &Distant| s.emitter.illuminates();
         let suns = (0..sources.len()).filter(|&i| sources[i].is_small() && lights(&sources[i])).collect();
         let mut all = Self { sources, suns, dome: None };
-        let has_dome = all.sources.iter().any(|s| s.is_dome);
+        let has_dome = all.sources.iter().any(|s| s.lights_widely);
         all.dome = has_dome.then(|| Dome::new(|d| all.dome_radiance(d))).flatten();
         all
     }
@@ -118,7 +118,7 @@ impl DistantSources {
     /// Radiance of all that lights and is no sun.
     pub fn dome_radiance(&self, direction: Vec3) -> Rgb {
         match self.seen(direction).map(|i| &self.sources[i]) {
-            Some(s) if s.is_dome => s.emitter.radiance(&at_infinity(direction)),
+            Some(s) if s.lights_widely => s.emitter.radiance(&at_infinity(direction)),
             _ => Rgb::ZERO,
         }
     }
@@ -150,7 +150,7 @@ impl DistantSources {
     pub fn sample_dome(&self, u: [f64; 2]) -> Option<LightSample> {
         let (direction, pdf) = self.dome.as_ref()?.sample(u);
         let index = self.seen(direction)?;
-        self.sources[index].is_dome.then(|| self.light_sample(index, direction, pdf))
+        self.sources[index].lights_widely.then(|| self.light_sample(index, direction, pdf))
     }
 
     /// What the emitter of a sample sends here if nothing is in between.

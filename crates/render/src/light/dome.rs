@@ -72,7 +72,7 @@ impl Dome {
     }
 }
 
-/// Running sums of so many lines of steps, and those where lines end; where the last one ends, nothing is told.
+/// Running sums of so many lines of steps, and those where lines end (all, or all but the last).
 #[derive(Debug)]
 struct Sums<const LINES: usize, const ENDS: usize> {
     ends: [f32; ENDS],

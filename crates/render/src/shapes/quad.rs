@@ -135,10 +135,12 @@ impl Quad {
         let ac = dot(0, 2);
         let one = [la * (lb * lc + bc) + ab * lc + ac * lb, 2.0 * height * self.half_areas[0]];
         let other = [la * (ld * lc + cd) + da * lc + ac * ld, 2.0 * height * self.half_areas[1]];
-        2.0 * warp::angle([
+        let half = warp::angle([
             one[0] * other[0] - one[1] * other[1],
             (one[0] * other[1] + other[0] * one[1]).max(0.0),
-        ])
+        ]);
+        // Rounding knows no angle of zero.
+        2.0 * half.max(0.0)
     }
 
     /// Is there a [map](Self::sample_rectangle) of the whole piece?
