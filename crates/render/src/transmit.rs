@@ -92,14 +92,13 @@ impl World {
             return self.followed(*ray, target, *inside);
         }
         let (mut layers, mut result) = (None::<Layers>, Some(Transmitted::CLEAR));
-        let mut is_walled = false;
         self.accel.each_crossing(ray, target.distance * (1.0 - SHORT_OF_TARGET), |hit| {
             if is_target(&hit, target) {
                 return true;
             }
             // Mostly this is all.
             if self.object(&hit).is_wall {
-                is_walled = true;
+                result = Some(Transmitted::BLOCKED);
                 return false;
             }
             result = match (result, self.pass(&hit, ray, target)) {
@@ -115,9 +114,6 @@ impl World {
             };
             result.is_some_and(|r| !r.is_blocked())
         });
-        if is_walled {
-            return Transmitted::BLOCKED;
-        }
         result.unwrap_or_else(|| self.followed(*ray, target, *inside))
     }
 

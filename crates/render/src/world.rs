@@ -134,10 +134,7 @@ impl World {
 
     /// The same of a path that has come so far before: since it was last scattered, and since the camera [m].
     pub(crate) fn arrival_after(&self, way: [f64; 2], hit: &Hit, ray: &Ray) -> Arrival {
-        let mut arrival = self.arrival(hit, ray);
-        arrival.distance += way[0];
-        arrival.travelled += way[1];
-        arrival
+        self.arrival(hit, ray).after(way.map(|way| way + hit.t))
     }
 
     /// What a path that is in these volumes meets where it has arrived at an object; they change where it passes a boundary, and the

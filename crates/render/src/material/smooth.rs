@@ -64,10 +64,14 @@ pub(crate) trait Lobes {
     const ARE_PLAIN: bool;
 
     /// Value [1/sr] towards a direction.
-    fn evaluate(&self, direction: Vec3) -> SmoothValue;
+    fn evaluate(&self, direction: Vec3) -> SmoothValue {
+        self.evaluate_with_pdf(direction).0
+    }
 
     /// Density [1/sr] of [`Self::draw`].
-    fn pdf(&self, direction: Vec3) -> f64;
+    fn pdf(&self, direction: Vec3) -> f64 {
+        self.evaluate_with_pdf(direction).1
+    }
 
     /// Value and density in one.
     fn evaluate_with_pdf(&self, direction: Vec3) -> (SmoothValue, f64);
@@ -249,14 +253,6 @@ impl Lobes for Smooth<'_> {
 
 impl Lobes for WardLobes<'_> {
     const ARE_PLAIN: bool = true;
-
-    fn evaluate(&self, direction: Vec3) -> SmoothValue {
-        self.evaluate_with_pdf(direction).0
-    }
-
-    fn pdf(&self, direction: Vec3) -> f64 {
-        self.evaluate_with_pdf(direction).1
-    }
 
     fn evaluate_with_pdf(&self, direction: Vec3) -> (SmoothValue, f64) {
         self.evaluate_with_pdf(direction)

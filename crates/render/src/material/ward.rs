@@ -422,14 +422,6 @@ impl WardLobes<'_> {
         (value, pdf)
     }
 
-    pub fn evaluate(&self, direction: Vec3) -> SmoothValue {
-        self.evaluate_with_pdf(direction).0
-    }
-
-    pub fn pdf(&self, direction: Vec3) -> f64 {
-        self.evaluate_with_pdf(direction).1
-    }
-
     pub fn sample(&self, choice: f64, u: [f64; 2]) -> Option<SmoothSample> {
         let direction = self.sample_direction(choice, u)?;
         let (value, pdf) = self.evaluate_with_pdf(direction);

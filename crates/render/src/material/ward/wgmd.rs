@@ -10,7 +10,7 @@ use super::{
     transmission::{Bound, bound_at},
 };
 use crate::material::{
-    Arrival, Scattering, Smooth, SmoothSample, SmoothValue, Step, fault_of, modulation_of,
+    Arrival, Lobes, Scattering, Smooth, SmoothSample, SmoothValue, Step, fault_of, modulation_of,
 };
 use std::sync::Arc;
 use sunpeak_core::{Error, Rgb, Vec3, luminance};
