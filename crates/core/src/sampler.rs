@@ -1,14 +1,16 @@
-//! Owen-scrambled Sobol samples (Burley 2020, "Practical Hash-based Owen Scrambling").
+//! Owen-scrambled Sobol samples (Burley 2020, "Practical Hash-based Owen Scrambling"), and past their dimensions independent ones.
 
 use sobol_burley::parts::{Int4, hash, hash_int4, owen_scramble_int4_rev, owen_scramble_rev, sobol_int4_rev};
 use std::sync::LazyLock;
 
+/// Sets of four dimensions in which samples are points of the sequence: those of the first vertices of a path. What it meets farther on
+/// is so different from sample to sample that independent numbers, which cost less, do as well.
+const SETS: u32 = 16;
+
 /// What each digit of an index, of four bits, adds to the points of the sequence, for each set of dimensions: points are sums over the bits
 /// of their index, bit by bit without carry.
-static DIGITS: LazyLock<Box<[[[Int4; 16]; 4]]>> = LazyLock::new(|| {
-    let of_set = |set: u32| [0, 1, 2, 3].map(|place| digits(set, place));
-    (0..sobol_burley::NUM_DIMENSION_SETS_4D).map(of_set).collect()
-});
+static DIGITS: LazyLock<[[[Int4; 16]; 4]; SETS as usize]> =
+    LazyLock::new(|| std::array::from_fn(|set| [0, 1, 2, 3].map(|place| digits(set as u32, place))));
 
 fn digits(set: u32, place: u32) -> [Int4; 16] {
     std::array::from_fn(|digit| sobol_int4_rev((digit as u32) << (28 - 4 * place), set))
@@ -19,13 +21,14 @@ fn digits(set: u32, place: u32) -> [Int4; 16] {
 /// The same seed, stream and index give the same numbers, on any number of threads.
 #[derive(Clone, Debug)]
 pub struct Sampler {
-    index: u32,
-    seed: u32,
-    /// The index in the order in which this seed and round visit the sequence, bits reversed.
+    /// Seed of the sequence's scrambling.
+    scrambling: u32,
+    /// Seed of the independent numbers, another one for each index.
+    independence: u64,
+    /// The index in the order in which this seed visits the sequence, bits reversed.
     shuffled: u32,
-    /// Sets of dimensions that were used, of this round.
+    /// Sets of dimensions that were used.
     set: u32,
-    round: u32,
     values: [f32; 4],
     /// How many of the values were given out.
     used: usize,
@@ -36,8 +39,15 @@ impl Sampler {
     pub fn new(seed: u64, stream: u64, index: u64) -> Self {
         let chunk = index / Self::CHUNK;
         let mixed = mix(seed ^ mix(stream.wrapping_add(mix(chunk).wrapping_mul(u64::from(chunk > 0)))));
-        let (index, seed) = ((index % Self::CHUNK) as u32, mixed as u32);
-        Self { index, seed, shuffled: shuffled(index, seed), set: 0, round: 0, values: [0.0; 4], used: 4 }
+        let (index, scrambling) = ((index % Self::CHUNK) as u32, mixed as u32);
+        Self {
+            scrambling,
+            independence: mix(mixed.wrapping_add(u64::from(index))),
+            shuffled: shuffled(index, scrambling),
+            set: 0,
+            values: [0.0; 4],
+            used: 4,
+        }
     }
 
     /// Length of the sequence in `sobol_burley`.
@@ -70,19 +80,14 @@ impl Sampler {
         std::array::from_fn(|i| f64::from(self.values[(used + i) % 4]))
     }
 
-    /// Past the last dimension set the sets repeat under another seed: deep bounces stay independent.
     fn refill(&mut self) {
-        if self.set == sobol_burley::NUM_DIMENSION_SETS_4D {
-            (self.set, self.round) = (0, self.round + 1);
-            self.shuffled = shuffled(self.index, self.seed_of_round());
-        }
-        self.values = values(self.shuffled, self.set, self.seed_of_round());
+        self.values = if self.set < SETS {
+            values(self.shuffled, self.set, self.scrambling)
+        } else {
+            independent(self.independence, self.set)
+        };
         self.set += 1;
         self.used = 0;
-    }
-
-    fn seed_of_round(&self) -> u32 {
-        self.seed.wrapping_add(self.round.wrapping_mul(0x9e37_79b9))
     }
 }
 
@@ -101,6 +106,14 @@ fn values(shuffled: u32, set: u32, seed: u32) -> [f32; 4] {
     let point = a[digit(0)] ^ b[digit(1)] ^ c[digit(2)] ^ d[digit(3)];
     let scrambled = owen_scramble_int4_rev(point, hash_int4(scramble.into()));
     scrambled.reverse_bits().to_f32_norm()
+}
+
+/// Numbers that have nothing to do with those of other sets or seeds (SplitMix64: Steele, Lea, Flood 2014).
+fn independent(seed: u64, set: u32) -> [f32; 4] {
+    let at = |i: u64| mix(seed.wrapping_add((2 * u64::from(set) + i).wrapping_mul(0x9e37_79b9_7f4a_7c15)));
+    let (a, b) = (at(0), at(1));
+    [a as u32, (a >> 32) as u32, b as u32, (b >> 32) as u32]
+        .map(|bits| (bits >> 8) as f32 * (0.5 / (1 << 23) as f32))
 }
 
 /// Finaliser of SplitMix64 (Steele, Lea, Flood 2014).
@@ -130,10 +143,36 @@ mod tests {
 
     #[test]
     fn the_halves_make_the_whole() {
-        let many = (0..1000u32).map(|i| (i * 65_521 % 65_536, i % 64, i.wrapping_mul(0x9e37_79b9)));
-        for (index, set, seed) in many.chain([(0, 0, 0), (65_535, 63, 0xffff_ffff)]) {
+        let many = (0..1000u32).map(|i| (i * 65_521 % 65_536, i % SETS, i.wrapping_mul(0x9e37_79b9)));
+        for (index, set, seed) in many.chain([(0, 0, 0), (65_535, SETS - 1, 0xffff_ffff)]) {
             let whole = sobol_burley::sample_4d(index, set, seed);
             assert_eq!(values(shuffled(index, seed), set, seed), whole);
+        }
+    }
+
+    #[test]
+    fn past_the_sequence_numbers_are_even_and_unrelated() {
+        let (n, streams) = (4096, 4);
+        let drawn: Vec<[f64; 8]> = (0..n * streams)
+            .map(|i| {
+                let mut s = Sampler::new(5, i / n, i % n);
+                (0..4 * SETS).for_each(|_| _ = s.next_1d());
+                std::array::from_fn(|_| s.next_1d() - 0.5)
+            })
+            .collect();
+        let count = drawn.len() as f64;
+        for i in 0..8 {
+            // With itself, with the other numbers of its sample, with those of the next sample, and with those of the next stream.
+            for (other, ahead) in (0..8).flat_map(|j| [(j, 0), (j, 1), (j, n as usize)]) {
+                let pairs = drawn.iter().zip(drawn.iter().cycle().skip(ahead));
+                let mean = pairs.map(|(a, b)| a[i] * b[other]).sum::<f64>() / count;
+                let expected = if (other, ahead) == (i, 0) { 1.0 / 12.0 } else { 0.0 };
+                // The deviation of a product of two is 1/12, of a square 0.075.
+                assert!((mean - expected).abs() < 4.5 / 12.0 / count.sqrt(), "{i} {other} {ahead}: {mean}");
+            }
+            let mean = drawn.iter().map(|a| a[i]).sum::<f64>() / count;
+            assert!(mean.abs() < 4.5 * (1.0 / 12.0_f64).sqrt() / count.sqrt(), "{i}: {mean}");
+            assert!(drawn.iter().all(|a| (-0.5..0.5).contains(&a[i])));
         }
     }
 
