@@ -56,11 +56,9 @@ impl Cone {
     /// A direction evenly from it, by a point of the unit square; density 1 over the solid angle.
     pub fn sample(&self, u: [f64; 2]) -> Vec3 {
         let [dx, dy] = warp::square_to_disk(u);
-        let radius_squared = dx * dx + dy * dy;
-        // 1 - cos(theta) is uniform; sin(theta) from it without cancellation.
-        let height = self.height * radius_squared;
-        let scale =
-            if radius_squared > 0.0 { (height * (2.0 - height) / radius_squared).sqrt() } else { 0.0 };
+        // 1 - cos(theta) is uniform; sin(theta) over the radius from it without cancellation.
+        let height = self.height * (dx * dx + dy * dy);
+        let scale = (self.height * (2.0 - height)).sqrt();
         self.frame.to_world(Vec3::new(dx * scale, dy * scale, 1.0 - height))
     }
 }

@@ -4,7 +4,7 @@ use crate::Vec3;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_8, PI, SQRT_2};
 
 /// Unit square to unit disk, area-preserving and continuous (Shirley and Chiu 1997).
-#[inline]
+#[inline(always)]
 pub fn square_to_disk([u, v]: [f64; 2]) -> [f64; 2] {
     let (a, b) = (2.0 * u - 1.0, 2.0 * v - 1.0);
     if a == 0.0 && b == 0.0 {

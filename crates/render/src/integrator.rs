@@ -66,7 +66,7 @@ impl<'w> Integrator<'w> {
     pub fn radiance(&self, ray: Ray, reach: f64, sampler: &mut Sampler) -> Rgb {
         let inside = self.world.inside_at(&ray);
         let tie = self.tie(sampler);
-        self.trace(vec![Path::from_camera(ray, reach, inside)], &tie, sampler)
+        self.trace(Some(Path::from_camera(ray, reach, inside)), room_for_branches(), &tie, sampler)
     }
 
     /// Irradiance [W/m²] on the front of a surface element.
@@ -77,22 +77,30 @@ impl<'w> Integrator<'w> {
         let sensor = Met::of_lobes(&arrival, &smooth, guide.as_ref());
         let ray = Ray::new(point, -normal);
         let mut path = Path::from_camera(ray, f64::INFINITY, self.world.inside_at(&ray));
-        let mut branches = Vec::new();
+        let mut branches = room_for_branches();
         let tie = self.tie(sampler);
         let receiver = self.receiver(&path, &sensor);
         let direct = self.direct(&path, &sensor, &receiver, sampler)
             + self.light_of_patches(&sensor, &receiver, &tie, sampler);
-        if self.scatter(&mut path, &sensor, &mut branches, sampler) {
-            branches.push(path);
-        }
-        direct + path.ambient + self.trace(branches, &tie, sampler)
+        let goes_on = self.scatter(&mut path, &sensor, &mut branches, sampler);
+        let past_last_bounce = path.ambient;
+        let first = if goes_on { Some(path) } else { branches.pop() };
+        direct + past_last_bounce + self.trace(first, branches, &tie, sampler)
     }
 
-    fn trace(&self, mut branches: Vec<Path>, tie: &Tie<'w>, sampler: &mut Sampler) -> Rgb {
-        let mut sum = Rgb::ZERO;
-        while let Some(mut path) = branches.pop() {
+    /// Follow a path and all that branch off.
+    fn trace(
+        &self,
+        first: Option<Path>,
+        mut branches: Vec<Path>,
+        tie: &Tie<'w>,
+        sampler: &mut Sampler,
+    ) -> Rgb {
+        let (mut next, mut sum) = (first, Rgb::ZERO);
+        while let Some(path) = &mut next {
             path.ambient = Rgb::ZERO;
-            sum += self.follow(&mut path, &mut branches, tie, sampler) + path.ambient;
+            sum += self.follow(path, &mut branches, tie, sampler) + path.ambient;
+            next = branches.pop();
         }
         sum
     }
@@ -261,12 +269,12 @@ impl<'w> Integrator<'w> {
         let rates = guide.rates;
         if path.is_view() {
             let mut branch = |direction: Option<Vec3>, path: &mut Path, sampler: &mut Sampler| {
-                let mut other = *path;
-                other.ambient = Rgb::ZERO;
-                if go(&mut other, direction, sampler) && survives(&mut other, sampler) {
-                    branches.push(other);
-                }
-                path.ambient += other.ambient;
+                branches.push(path.branch());
+                branches.pop_if(|other| {
+                    let goes_on = go(other, direction, sampler) && survives(other, sampler);
+                    path.ambient += other.ambient;
+                    !goes_on
+                });
             };
             if rates.shades > 0.0 {
                 branch(guide.sample_shades(sampler.next_3d()), path, sampler);
@@ -350,6 +358,11 @@ impl<'w> Integrator<'w> {
         }
         field * power_heuristic(sample.pdf * share, self.world.distant.dome_pdf(sample.direction))
     }
+}
+
+/// For what mostly branches off: a path to a shade, and one against a scattered sun.
+fn room_for_branches() -> Vec<Path> {
+    Vec::with_capacity(2)
 }
 
 /// A direction that the lobes or the guide have drawn, weighed by the density of all that could have drawn it (Veach 1997,

@@ -2,6 +2,8 @@
 
 use super::MAX_TRIANGLES;
 use crate::shapes::{Quad, Triangle};
+use arrayvec::ArrayVec;
+use std::cell::OnceCell;
 use std::f64::consts::PI;
 use sunpeak_core::{Vec3, warp};
 
@@ -14,32 +16,37 @@ const SMALL_SR: f64 = 1e-4;
 pub(super) struct ShadesAt<'g> {
     quads: &'g [Quad],
     point: Vec3,
-    /// Of each shade [sr].
-    solid_angles: [f64; MAX_TRIANGLES],
+    /// Most points need not know: they draw no direction towards a shade, and meet none with those that they draw otherwise.
+    sizes: OnceCell<Sizes>,
+}
+
+/// Solid angles [sr] of each shade, and of all together.
+#[derive(Clone, Debug)]
+struct Sizes {
+    each: ArrayVec<f64, MAX_TRIANGLES>,
     whole: f64,
 }
 
 impl<'g> ShadesAt<'g> {
     /// Of at most [`MAX_TRIANGLES`] shades.
-    #[inline]
     pub fn new(quads: &'g [Quad], point: Vec3) -> Self {
-        let (mut solid_angles, mut whole) = ([0.0; MAX_TRIANGLES], 0.0);
-        for (solid_angle, quad) in solid_angles.iter_mut().zip(quads) {
-            *solid_angle = quad.solid_angle(point);
-            whole += *solid_angle;
-        }
-        Self { quads, point, solid_angles, whole }
+        Self { quads, point, sizes: OnceCell::new() }
     }
 
-    fn shades(&self) -> impl Iterator<Item = (&Quad, f64)> {
-        self.quads.iter().zip(self.solid_angles.iter().copied())
+    fn sizes(&self) -> &Sizes {
+        self.sizes.get_or_init(|| {
+            let each: ArrayVec<_, MAX_TRIANGLES> =
+                self.quads.iter().map(|quad| quad.solid_angle(self.point)).collect();
+            Sizes { whole: each.iter().sum(), each }
+        })
     }
 
     /// A direction; `None` where no shade can be seen.
     pub fn sample(&self, [choice, u, v]: [f64; 3]) -> Option<Vec3> {
-        let mut left = choice * self.whole;
-        let (quad, solid_angle) = self.shades().find(|(_, solid_angle)| {
-            left -= solid_angle;
+        let sizes = self.sizes();
+        let mut left = choice * sizes.whole;
+        let (quad, &solid_angle) = self.quads.iter().zip(&sizes.each).find(|(_, solid_angle)| {
+            left -= **solid_angle;
             left < 0.0
         })?;
         if quad.is_rectangle() && solid_angle >= SMALL_SR {
@@ -64,17 +71,17 @@ impl<'g> ShadesAt<'g> {
     /// Density [1/sr].
     #[inline]
     pub fn pdf(&self, direction: Vec3) -> f64 {
-        if self.whole <= 0.0 {
-            return 0.0;
-        }
         let mut sum = 0.0;
-        for (quad, solid_angle) in self.shades() {
-            if let Some(t) = quad.crossing(self.point, direction).filter(|_| solid_angle > 0.0) {
-                let is_small = solid_angle < SMALL_SR;
-                sum += if is_small { solid_angle * t * t / quad.area_across(direction) } else { 1.0 };
+        for (i, quad) in self.quads.iter().enumerate() {
+            let Some(t) = quad.crossing(self.point, direction) else { continue };
+            let solid_angle = self.sizes().each[i];
+            if solid_angle >= SMALL_SR {
+                sum += 1.0;
+            } else if solid_angle > 0.0 {
+                sum += solid_angle * t * t / quad.area_across(direction);
             }
         }
-        sum / self.whole
+        if sum > 0.0 { sum / self.sizes().whole } else { 0.0 }
     }
 }
 
@@ -149,7 +156,7 @@ mod tests {
             };
             for piece in shades.iter().copied().flat_map(pieces) {
                 let count = directions.iter().filter(|direction| meets(&piece, **direction)).count() as f64;
-                let expected = f64::from(n) * piece.solid_angle(point) / at.whole;
+                let expected = f64::from(n) * piece.solid_angle(point) / at.sizes().whole;
                 assert!(
                     (count - expected).abs() < 4.5 * expected.sqrt() + 1.0,
                     "{point}: {count} {expected}"

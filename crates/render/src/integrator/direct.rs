@@ -97,6 +97,7 @@ impl Integrator<'_> {
         self.limits.max_bounces.is_some_and(|limit| path.bounces >= limit)
     }
 
+    #[inline(always)]
     fn received<L: Lobes>(&self, receiver: &Receiver<L>, sample: &LightSample, target: &Target) -> Rgb {
         let value = receiver.smooth_value(sample);
         if value.total() == Rgb::ZERO || sample.light.is_none() {

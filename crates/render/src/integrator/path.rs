@@ -78,6 +78,11 @@ impl Path {
         }
     }
 
+    /// Another path that goes on from here.
+    pub fn branch(&self) -> Self {
+        Self { ambient: Rgb::ZERO, ..*self }
+    }
+
     /// Does the path come from the camera with nothing but straight passes, mirrors and refractions?
     pub fn is_view(&self) -> bool {
         self.departure.is_none()

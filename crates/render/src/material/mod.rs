@@ -135,7 +135,8 @@ impl Arrival {
 
     /// The normal on the ray's side.
     pub fn facing_normal(&self) -> Vec3 {
-        if self.at_front() { self.normal } else { -self.normal }
+        // A factor, since a branch would often be guessed wrong.
+        self.normal * if self.at_front() { 1.0 } else { -1.0 }
     }
 
     /// Cosine between the ray and the normal, positive.

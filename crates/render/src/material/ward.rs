@@ -404,22 +404,31 @@ impl WardLobes<'_> {
     }
 
     /// Value [1/sr] in a direction, and density [1/sr] of `sample`.
+    #[inline(always)]
     pub fn evaluate_with_pdf(&self, direction: Vec3) -> (SmoothValue, f64) {
-        let (at, of) = (&self.at, &*self.strengths);
-        let cosine = direction.dot(at.normal);
+        let of = &*self.strengths;
+        let cosine = direction.dot(self.at.normal);
         let side = usize::from(cosine <= 0.0);
         let mut value = SmoothValue { diffuse: of.diffuse[side], glossy: Rgb::ZERO };
         let mut pdf = of.chances[side] * cosine.abs() * FRAC_1_PI;
-        let glossy_chance = of.chances[2 + side];
-        if at.is_rough() && glossy_chance > 0.0 {
-            let (share, (lobe, lobe_pdf)) = match side {
-                0 => (of.reflection, at.reflection_to(direction, cosine)),
-                _ => (of.transmission, at.transmission_to(direction)),
-            };
-            value.glossy = share * lobe;
-            pdf += glossy_chance * lobe_pdf;
+        if of.chances[2 + side] > 0.0 && self.at.is_rough() {
+            let (glossy, glossy_pdf) = self.glossy(direction, cosine);
+            value.glossy = glossy;
+            pdf += glossy_pdf;
         }
         (value, pdf)
+    }
+
+    /// The same of the rough lobes: apart, since most surfaces have none.
+    #[inline(never)]
+    fn glossy(&self, direction: Vec3, cosine: f64) -> (Rgb, f64) {
+        let (at, of) = (&self.at, &*self.strengths);
+        let (share, chance, (lobe, pdf)) = if cosine > 0.0 {
+            (of.reflection, of.chances[2], at.reflection_to(direction, cosine))
+        } else {
+            (of.transmission, of.chances[3], at.transmission_to(direction))
+        };
+        (share * lobe, chance * pdf)
     }
 
     pub fn sample(&self, choice: f64, u: [f64; 2]) -> Option<SmoothSample> {

@@ -92,14 +92,15 @@ impl Quad {
     /// Distance at which a ray crosses it, from either side; nothing if it does not.
     #[inline(always)]
     pub fn crossing(&self, origin: Vec3, direction: Vec3) -> Option<f64> {
-        let (from, along) = (self.local(origin), self.frame.to_local(direction));
-        let height = from.z.abs();
-        let descent = if from.z > 0.0 { -along.z } else { along.z };
+        let from = origin - self.corners[0];
+        let (height, along) = (from.dot(self.frame.z), direction.dot(self.frame.z));
+        let (height, descent) = if height > 0.0 { (height, -along) } else { (-height, along) };
         if descent <= 0.0 {
             return None;
         }
         // Where it crosses the plane, times its descent.
-        let (x, y) = (from.x * descent + along.x * height, from.y * descent + along.y * height);
+        let across = from * descent + direction * height;
+        let (x, y) = (across.dot(self.frame.x), across.dot(self.frame.y));
         let is_within = |i: usize| self.across_x[i] * x + self.across_y[i] * y <= self.edges[i] * descent;
         (is_within(0) & is_within(1) & is_within(2) & is_within(3)).then(|| height / descent)
     }
