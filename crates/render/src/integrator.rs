@@ -82,7 +82,7 @@ impl<'w> Integrator<'w> {
         let receiver = self.receiver(&path, &sensor);
         let direct = self.direct(&path, &sensor, &receiver, sampler)
             + self.light_of_patches(&sensor, &receiver, &tie, sampler);
-        let goes_on = self.scatter(&mut path, &sensor, &mut branches, sampler);
+        let goes_on = self.scatter(&mut path, &sensor, None, &mut branches, sampler);
         let past_last_bounce = path.ambient;
         let first = if goes_on { Some(path) } else { branches.pop() };
         direct + past_last_bounce + self.trace(first, branches, &tie, sampler)
@@ -124,7 +124,7 @@ impl<'w> Integrator<'w> {
                         path.travel(distance);
                         let receiver = self.receiver(path, &met);
                         sum += path.throughput * self.direct(path, &met, &receiver, sampler);
-                        if !self.scatter(path, &met, branches, sampler) || !survives(path, sampler) {
+                        if !self.scatter(path, &met, None, branches, sampler) || !survives(path, sampler) {
                             return sum;
                         }
                         continue;
@@ -191,20 +191,27 @@ impl<'w> Integrator<'w> {
         sampler: &mut Sampler,
     ) -> (Rgb, bool) {
         let mut sum = Rgb::ZERO;
+        let mut onwards = None;
         if met.smooth_share > 0.0 {
             let receiver = Receiver { met, is_last: self.is_last(path), inside: &path.inside };
+            // Most of the shade's light is known; the rest, seldom looked for, counts the more.
+            let is_known = met.backlight().is_some() && !path.is_view();
+            let looks_for_rest = !is_known || sampler.next_1d() < CORRECTED;
+            // Directions are drawn before the first ray is followed: the processor finds them side by side.
+            let sky = if looks_for_rest { self.world.distant.draw_sky(sampler) } else { None };
+            let guide = met.guide.filter(|_| met.others().is_none());
+            onwards = guide.map(|guide| Onwards::draw(met, guide, path.is_view(), sampler));
             sum += path.throughput * self.direct_from_suns(path, met, &receiver, sampler);
-            if met.backlight().is_some() && !path.is_view() {
-                // Most of the shade's light is known; the rest, seldom looked for, counts the more.
-                if sampler.next_1d() >= CORRECTED {
-                    return (sum, false);
-                }
+            if !looks_for_rest {
+                return (sum, false);
+            }
+            if is_known {
                 path.throughput /= CORRECTED;
             }
-            sum += path.throughput * self.direct_from_others(met, &receiver, sampler);
+            sum += path.throughput * self.direct_from_others(met, &receiver, sky, sampler);
             sum += path.throughput * self.light_of_patches(met, &receiver, tie, sampler);
         }
-        if !self.go_on(path, met, branches, sampler) || !survives(path, sampler) {
+        if !self.go_on(path, met, onwards, branches, sampler) || !survives(path, sampler) {
             return (sum, false);
         }
         // Only with a path that goes on: it finds in the mean what is taken off here.
@@ -219,10 +226,13 @@ impl<'w> Integrator<'w> {
         &self,
         path: &mut Path,
         met: &Met<L>,
+        onwards: Option<Onwards>,
         branches: &mut Vec<Path>,
         sampler: &mut Sampler,
     ) -> bool {
-        let Some(scattering) = met.others() else { return self.scatter(path, met, branches, sampler) };
+        let Some(scattering) = met.others() else {
+            return self.scatter(path, met, onwards, branches, sampler);
+        };
         let [straight, mirrored, refracted, smooth] = met.shares;
         let whole = straight + mirrored + refracted + smooth;
         if whole <= 0.0 {
@@ -230,7 +240,7 @@ impl<'w> Integrator<'w> {
         }
         if whole == smooth {
             // No choice, no random number.
-            return self.scatter(path, met, branches, sampler);
+            return self.scatter(path, met, onwards, branches, sampler);
         }
         let choice = sampler.next_1d() * whole;
         if choice < straight {
@@ -244,57 +254,45 @@ impl<'w> Integrator<'w> {
             let Some((direction, share)) = (if is_first { first } else { second }) else { return false };
             path.refract(met.arrival, direction, share * (whole / luminance(share)), met.material);
         } else {
-            return self.scatter(path, met, branches, sampler);
+            return self.scatter(path, met, onwards, branches, sampler);
         }
         true
     }
 
-    /// Go on in directions drawn from the smooth lobes, and where the guide points: the first time each way, the others as
-    /// `branches`, later one way of all.
+    /// Go on by the smooth lobes, and where the guide points: the first time each way, the others as `branches`, later one way of all.
+    /// Directions are drawn now if they have not been before.
     fn scatter<L: Lobes>(
         &self,
         path: &mut Path,
         met: &Met<L>,
+        onwards: Option<Onwards>,
         branches: &mut Vec<Path>,
         sampler: &mut Sampler,
     ) -> bool {
-        let smooth = met.lobes;
         let Some(guide) = met.guide else {
-            return smooth.draw(sampler).is_some_and(|sample| self.leave(path, met, &sample, sampler));
+            return met.lobes.draw(sampler).is_some_and(|sample| self.leave(path, met, &sample, sampler));
         };
         let go = |path: &mut Path, direction: Option<Vec3>, sampler: &mut Sampler| {
             let sample = direction.and_then(|direction| mixed(met, guide, direction));
             sample.is_some_and(|sample| self.leave(path, met, &sample, sampler))
         };
-        let rates = guide.rates;
-        if path.is_view() {
-            let mut branch = |direction: Option<Vec3>, path: &mut Path, sampler: &mut Sampler| {
-                branches.push(path.branch());
-                branches.pop_if(|other| {
-                    let goes_on = go(other, direction, sampler) && survives(other, sampler);
-                    path.ambient += other.ambient;
-                    !goes_on
-                });
-            };
-            if rates.shades > 0.0 {
-                branch(guide.sample_shades(sampler.next_3d()), path, sampler);
-            }
-            if rates.suns > 0.0 {
-                branch(guide.sample_suns(sampler.next_3d()), path, sampler);
-            }
-            let [u, v, choice] = sampler.next_3d();
-            let direction = smooth.sample_direction(choice, [u, v], sampler);
-            return go(path, direction, sampler);
-        }
-        let [u, v, choice] = sampler.next_3d();
-        let direction = if choice < rates.own {
-            smooth.sample_direction(choice / rates.own, [u, v], sampler)
-        } else if choice < rates.own + rates.shades {
-            guide.sample_shades([(choice - rates.own) / rates.shades, u, v])
-        } else {
-            guide.sample_suns([(choice - rates.own - rates.shades) / rates.suns, u, v])
+        let mut branch = |path: &mut Path, direction: Option<Vec3>, sampler: &mut Sampler| {
+            branches.push(path.branch());
+            branches.pop_if(|other| {
+                let goes_on = go(other, direction, sampler) && survives(other, sampler);
+                path.ambient += other.ambient;
+                !goes_on
+            });
         };
-        go(path, direction, sampler)
+        match onwards.unwrap_or_else(|| Onwards::draw(met, guide, path.is_view(), sampler)) {
+            Onwards::One(direction) => go(path, direction, sampler),
+            Onwards::EachWay { own, shades, suns } => {
+                for direction in [shades, suns].into_iter().flatten() {
+                    branch(path, Some(direction), sampler);
+                }
+                go(path, own, sampler)
+            }
+        }
     }
 
     /// Leave a vertex in a drawn direction; `false` if that leads nowhere.
@@ -357,6 +355,34 @@ impl<'w> Integrator<'w> {
             return field;
         }
         field * power_heuristic(sample.pdf * share, self.world.distant.dome_pdf(sample.direction))
+    }
+}
+
+/// Directions in which a path goes on by the smooth lobes of a vertex.
+enum Onwards {
+    /// One of all that the lobes and the guide draw.
+    One(Option<Vec3>),
+    /// The first time: one of the lobes, one to a shade, and one against a scattered sun.
+    EachWay { own: Option<Vec3>, shades: Option<Vec3>, suns: Option<Vec3> },
+}
+
+impl Onwards {
+    fn draw<L: Lobes>(met: &Met<L>, guide: &GuideAt, each_way: bool, sampler: &mut Sampler) -> Self {
+        let (rates, smooth) = (guide.rates, met.lobes);
+        if each_way {
+            let shades = if rates.shades > 0.0 { guide.sample_shades(sampler.next_3d()) } else { None };
+            let suns = if rates.suns > 0.0 { guide.sample_suns(sampler.next_3d()) } else { None };
+            let [u, v, choice] = sampler.next_3d();
+            return Self::EachWay { own: smooth.sample_direction(choice, [u, v], sampler), shades, suns };
+        }
+        let [u, v, choice] = sampler.next_3d();
+        Self::One(if choice < rates.own {
+            smooth.sample_direction(choice / rates.own, [u, v], sampler)
+        } else if choice < rates.own + rates.shades {
+            guide.sample_shades([(choice - rates.own) / rates.shades, u, v])
+        } else {
+            guide.sample_suns([(choice - rates.own - rates.shades) / rates.suns, u, v])
+        })
     }
 }
 

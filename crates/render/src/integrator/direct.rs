@@ -23,7 +23,9 @@ impl Integrator<'_> {
         receiver: &Receiver<L>,
         sampler: &mut Sampler,
     ) -> Rgb {
-        self.direct_from_suns(path, met, receiver, sampler) + self.direct_from_others(met, receiver, sampler)
+        let sky = self.world.distant.draw_sky(sampler);
+        self.direct_from_suns(path, met, receiver, sampler)
+            + self.direct_from_others(met, receiver, sky, sampler)
     }
 
     pub(super) fn receiver<'a, 'w, L: Lobes>(
@@ -66,17 +68,16 @@ impl Integrator<'_> {
         sum
     }
 
-    /// The part from sky, ground and lamps, less what of it is known.
+    /// The part from sky and ground, in the direction that was drawn, and from lamps, less what of it is known.
     pub(super) fn direct_from_others<L: Lobes>(
         &self,
         met: &Met<L>,
         receiver: &Receiver<L>,
+        sky: Option<LightSample>,
         sampler: &mut Sampler,
     ) -> Rgb {
         let mut sum = Rgb::ZERO;
-        if self.world.distant.has_dome()
-            && let Some(sample) = self.world.distant.sample_dome(sampler.next_2d())
-        {
+        if let Some(sample) = sky {
             sum += self.received(receiver, &sample, &Target::of(&sample));
         }
         if self.world.lamps.is_empty() {

@@ -6,7 +6,7 @@
 use super::{Light, LightSample, dome::Dome};
 use crate::SMALL_SOURCE_DEG;
 use crate::material::{Emitter, EmitterKind};
-use sunpeak_core::{Cone, Rgb, Vec3};
+use sunpeak_core::{Cone, Rgb, Sampler, Vec3};
 use sunpeak_scene::RayState;
 
 /// Where expressions see a source [m] (Radiance, `FHUGE`).
@@ -144,6 +144,11 @@ impl DistantSources {
         let direction = sun.cone.sample(u);
         let is_hidden = self.sources[..index].iter().any(|source| source.cone.contains(direction));
         (!is_hidden).then(|| self.light_sample(index, direction, 1.0 / sun.cone.solid_angle()))
+    }
+
+    /// A direction into the sky, if there is one, by numbers of the sampler.
+    pub fn draw_sky(&self, sampler: &mut Sampler) -> Option<LightSample> {
+        self.dome.as_ref().and_then(|_| self.sample_dome(sampler.next_2d()))
     }
 
     /// A direction into the sky, in proportion to its brightness.
