@@ -33,7 +33,7 @@ evalglare 3.06 shows."""
 Centre = Literal["angular", "sphere", "evalglare-3"]
 """Middle of a source: centre of gravity on the angular fisheye around the line of sight, whatever the picture's kind;
 the mean direction of its light; or, as evalglare 3.06 does, the centre of gravity on the picture itself, of the
-pixels' lower left corners."""
+pixels' lower left corners, then the middle of the pixel in which it lies."""
 
 RulesName = Literal["sunpeak", "evalglare-3", "wienold-2006"]
 

@@ -91,18 +91,24 @@ def draw(name: str, kind: str) -> sp.Picture:
     return sp.Picture.of(np.repeat(luminance[..., None] / 179, 3, axis=2), view)
 
 
-def check(report: sp.GlareReport, answer: Answer) -> None:
+def check(report: sp.GlareReport, answer: Answer, *, dgp: float = 0.002, relative: float = 0.01) -> None:
+    """By our rules: middles of sources differ by up to a pixel, see docs/glare.md."""
     theirs = answer.numbers
-    assert report.dgp == pytest.approx(theirs["dgp"], abs=0.005)
-    assert report.dgi == pytest.approx(theirs["dgi"], rel=0.01)
-    assert report.dgi_modified == pytest.approx(theirs["dgi_mod"], rel=0.01)
-    assert report.ugr == pytest.approx(theirs["ugr"], rel=0.01)
-    assert report.cgi == pytest.approx(theirs["cgi"], rel=0.01)
-    assert report.ugp == pytest.approx(theirs["ugp"], rel=0.01)
-    assert report.ugp_2017 == pytest.approx(theirs["ugp2"], rel=0.01)
-    assert report.vcp == pytest.approx(theirs["vcp"], abs=1)
-    assert report.ev_lux == pytest.approx(theirs["E_v"], rel=0.005)
     assert len(report.sources) == answer.sources
+    assert report.dgp == pytest.approx(theirs["dgp"], abs=dgp)
+    assert report.dgi == pytest.approx(theirs["dgi"], rel=relative)
+    assert report.dgi_modified == pytest.approx(theirs["dgi_mod"], rel=relative)
+    assert report.ugr == pytest.approx(theirs["ugr"], rel=relative)
+    assert report.cgi == pytest.approx(theirs["cgi"], rel=relative)
+    assert report.ugp == pytest.approx(theirs["ugp"], rel=relative)
+    assert report.ugp_2017 == pytest.approx(theirs["ugp2"], rel=relative)
+    assert report.vcp == pytest.approx(theirs["vcp"], abs=1)
+    assert report.ev_lux == pytest.approx(theirs["E_v"], rel=0.003)
+
+
+def check_by_its_rules(report: sp.GlareReport, answer: Answer) -> None:
+    """With its own coefficients and middles of sources nothing but solid angles at the rim is left."""
+    check(report, answer, dgp=2e-4, relative=0.001)
 
 
 HEMISPHERICAL = ["window to the left", "skylight", "window at the side", "sun alone", "dim room", "many things"]
@@ -113,10 +119,7 @@ def test_drawn_pictures(kind: str, name: str, radiance: Radiance, tmp_path: Path
     draw(name, kind).save(tmp_path / "drawn.hdr")
     answer = ask_evalglare(radiance, tmp_path / "drawn.hdr")
     picture = sp.Picture.load(tmp_path / "drawn.hdr")
-    report = sp.glare(picture, rules="evalglare-3")
-    check(report, answer)
-    # With its own coefficients and middles of sources nothing but pixels at edges is left.
-    assert report.dgp == pytest.approx(answer.numbers["dgp"], abs=0.002)
+    check_by_its_rules(sp.glare(picture, rules="evalglare-3"), answer)
     if kind == "a":
         check(sp.glare(picture), answer)
 
@@ -136,7 +139,7 @@ def test_thresholds_task_zone_and_split(radiance: Radiance, tmp_path: Path) -> N
         (["-Y", "10000"], {"peak_cd_m2": 10_000.0}),
         (["-t", "300", "200", "0.5", "-b", "9"], {"threshold_times_task": (9.0, task)}),
     ):
-        check(sp.glare(picture, rules="evalglare-3", **stated), ask_evalglare(radiance, path, *options))
+        check_by_its_rules(sp.glare(picture, rules="evalglare-3", **stated), ask_evalglare(radiance, path, *options))
 
 
 @pytest.mark.parametrize("rules", ["sunpeak", "evalglare-3"])
@@ -165,4 +168,4 @@ def test_rendered_pictures(towards: str, peak: str, radiance: Radiance, tmp_path
     sp.Picture.of(rendered.pixels, rendered.view).save(tmp_path / "room.hdr")
     picture = sp.Picture.load(tmp_path / "room.hdr")
     answer = ask_evalglare(radiance, tmp_path / "room.hdr")
-    check(sp.glare(picture, rules="evalglare-3"), answer)
+    check_by_its_rules(sp.glare(picture, rules="evalglare-3"), answer)

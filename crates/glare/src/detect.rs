@@ -47,6 +47,9 @@ pub(crate) fn sources(
     Ok(found)
 }
 
+/// What a mean of whole numbers may lose [pixels].
+const ROUNDING: f64 = 1e-6;
+
 /// Pixels above the threshold, in picture order.
 fn glaring(field: &Field, threshold: f64) -> Result<Vec<FieldPixel>> {
     let found = parts(field, |range| {
@@ -121,7 +124,8 @@ impl Head<'_> {
         sight * cos + mean.normalize_or_zero() * sin
     }
 
-    /// Centre of gravity on the picture, weighted with luminance and solid angle, of the pixels' lower left corners.
+    /// Centre of gravity on the picture, weighted with luminance and solid angle, of the pixels' lower left corners; then the middle of the
+    /// pixel in which it lies: evalglare 3.06 takes position indices there, so that a source that grows moves by whole pixels.
     fn picture_centre(&self, pixels: &[FieldPixel]) -> Option<Vec3> {
         let (mut columns, mut rows, mut weight) = (0.0, 0.0, 0.0);
         for pixel in pixels {
@@ -130,7 +134,8 @@ impl Head<'_> {
             rows += w * (pixel.index / self.field.width + 1) as f64;
             weight += w;
         }
-        self.field.towards(columns / weight, rows / weight)
+        self.field
+            .towards((columns / weight + ROUNDING).floor() + 0.5, (rows / weight - ROUNDING).ceil() - 0.5)
     }
 }
 
