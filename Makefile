@@ -24,12 +24,15 @@ export VIRTUAL_ENV := $(CURDIR)/$(VENV)
 export PATH := $(BIN):$(PATH)
 unexport PYTHONHOME PYTHONPATH
 
-.PHONY: help build demo test test-rust test-python lint fmt bench bench-transport fuzz docs lock clean
+.PHONY: help build wheel demo test test-rust test-python lint fmt bench bench-transport fuzz docs lock clean
 
 help: ## Say what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 20
 
 build: $(VENV)/.built ## Build the core and install it into .venv
+
+wheel: $(VENV)/.installed ## A wheel in dist/, laid out by a profile of its use; faster, 8 minutes (needs `rustup component add llvm-tools`)
+	$(BIN)/maturin build --release --locked --pgo --interpreter $(BIN)/python --out dist
 
 demo: build ## The main job: the same room without and with peak extraction, into demo/
 	$(BIN)/sunpeak demo -o $(DEMO_DIR)

@@ -24,6 +24,9 @@ impl Lamps {
 
     /// A direction towards one of the lamps.
     pub fn sample(&self, from: Vec3, choice: f64, u: [f64; 2]) -> Option<LightSample> {
+        if let [lamp] = &self.lamps[..] {
+            return lamp.sample(from, u);
+        }
         let whole = self.whole(from);
         if whole <= 0.0 {
             return None;
@@ -44,6 +47,9 @@ impl Lamps {
 
     /// Density [1/sr] of `sample` for a direction that meets lamp `index`.
     pub fn pdf(&self, index: usize, from: Vec3, direction: Vec3, distance: f64, normal: Vec3) -> f64 {
+        if let [lamp] = &self.lamps[..] {
+            return lamp.pdf(from, direction, distance, normal);
+        }
         let whole = self.whole(from);
         if whole <= 0.0 {
             return 0.0;
