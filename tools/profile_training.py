@@ -3,8 +3,8 @@
 usage: profile_training.py
 
 Pictures and sensors in the demo's room and in the example's office, with tables of either kind, without and with peak
-extraction, behind glass or a blind: what rendering spends its time with. Of the benchmarks' rooms only the demo's is
-among them.
+extraction, behind glass or a blind: what rendering spends its time with. Of the benchmarks' rooms the
+demo's is among them, and the office, there behind slats.
 """
 
 import tempfile

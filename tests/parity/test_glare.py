@@ -107,7 +107,7 @@ def check(report: sp.GlareReport, answer: Answer, *, dgp: float = 0.002, relativ
 
 
 def check_by_its_rules(report: sp.GlareReport, answer: Answer) -> None:
-    """With its own coefficients and middles of sources nothing but solid angles at the rim is left."""
+    """With its own coefficients and middles of sources little more than solid angles at the rim is left."""
     check(report, answer, dgp=2e-4, relative=0.001)
 
 

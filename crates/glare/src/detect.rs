@@ -47,9 +47,6 @@ pub(crate) fn sources(
     Ok(found)
 }
 
-/// What a mean of whole numbers may lose [pixels].
-const ROUNDING: f64 = 1e-6;
-
 /// Pixels above the threshold, in picture order.
 fn glaring(field: &Field, threshold: f64) -> Result<Vec<FieldPixel>> {
     let found = parts(field, |range| {
@@ -125,8 +122,10 @@ impl Head<'_> {
     }
 
     /// Centre of gravity on the picture, weighted with luminance and solid angle, of the pixels' lower left corners; then the middle of the
-    /// pixel in which it lies: evalglare 3.06 takes position indices there, so that a source that grows moves by whole pixels.
+    /// pixel in which it lies: evalglare 3.06 takes position indices there.
     fn picture_centre(&self, pixels: &[FieldPixel]) -> Option<Vec3> {
+        /// What a mean of whole numbers may lose [pixels].
+        const ROUNDING: f64 = 1e-6;
         let (mut columns, mut rows, mut weight) = (0.0, 0.0, 0.0);
         for pixel in pixels {
             let w = pixel.luminance_cd_m2 * pixel.solid_angle_sr;

@@ -44,8 +44,7 @@ pub enum SourceCentre {
     /// Mean direction of its light: the very middle of a round source. In large windows it lies nearer to the rim.
     Sphere,
     /// Centre of gravity on the picture itself, of the lower left corners of the pixels, then the middle of the pixel in which it lies: what
-    /// evalglare 3.06 does. A large window in
-    /// a `-vth` picture so has another centre than in a `-vta` picture of the same view.
+    /// evalglare 3.06 does. A large window in a `-vth` picture so has another centre than in a `-vta` picture of the same view.
     Evalglare3,
 }
 

@@ -24,9 +24,6 @@ impl Lamps {
 
     /// A direction towards one of the lamps.
     pub fn sample(&self, from: Vec3, choice: f64, u: [f64; 2]) -> Option<LightSample> {
-        if let [lamp] = &self.lamps[..] {
-            return lamp.sample(from, u);
-        }
         let whole = self.whole(from);
         if whole <= 0.0 {
             return None;
@@ -47,9 +44,6 @@ impl Lamps {
 
     /// Density [1/sr] of `sample` for a direction that meets lamp `index`.
     pub fn pdf(&self, index: usize, from: Vec3, direction: Vec3, distance: f64, normal: Vec3) -> f64 {
-        if let [lamp] = &self.lamps[..] {
-            return lamp.pdf(from, direction, distance, normal);
-        }
         let whole = self.whole(from);
         if whole <= 0.0 {
             return 0.0;
@@ -66,6 +60,10 @@ impl Lamps {
     }
 
     fn weight(&self, i: usize, from: Vec3) -> f64 {
+        // There is nothing to choose: any weight will do.
+        if self.lamps.len() == 1 {
+            return 1.0;
+        }
         if self.lamps.len() > WEIGHED_BY_DISTANCE {
             return self.strengths[i];
         }

@@ -30,8 +30,8 @@ const SMOOTH_ALPHA2: f64 = 1e-6;
 /// Smallest cosine to the ray (Radiance keeps it from zero likewise).
 const SMALLEST_COSINE: f64 = 1e-3;
 
-/// Past so many variances from its middle a Gaussian lobe is taken for zero: a part of 4e-18 of its light goes there, less than is lost to
-/// rounding.
+/// A Gaussian lobe is taken for zero where its exponent is beyond this: exp(-40) = 4e-18 of its light goes there (tan² of the half vector,
+/// over the roughness squared, is exponentially distributed; Walter 2005), less than is lost to rounding.
 const NEGLIGIBLE: f64 = 40.0;
 
 /// Radiance's estimate of what Fresnel's law adds to the specularity at this cosine: 0 at normal incidence, 1 at grazing.
