@@ -1,10 +1,14 @@
 //! Cones of directions.
 
 use crate::{Frame, Vec3, cone_solid_angle, warp};
+use std::f64::consts::PI;
 
 /// Cones are closed: a ray along the horizon, between a sky and a ground of 180 degrees each, sees one of them whatever rounding
 /// does to it.
 const EDGE: f64 = 1e-9;
+
+/// What comes so near to it [rad] may touch it: more than arc cosines lose at the poles.
+const NEAR_EDGE: f64 = 1e-6;
 
 /// All directions within an angle of an axis.
 #[derive(Clone, Copy, Debug)]
@@ -53,6 +57,22 @@ impl Cone {
         0.5 * (direction - self.axis()).length_squared() <= self.height * (1.0 + EDGE)
     }
 
+    /// Does it hold all directions, or any, between two heights z of unit vectors?
+    pub fn holds_strip(&self, heights: [f64; 2]) -> [bool; 2] {
+        let [z0, z1] = heights.map(|z| z.clamp(-1.0, 1.0));
+        let (axis, half) = (self.axis().z.clamp(-1.0, 1.0).acos(), 0.5 * self.angle_deg.to_radians());
+        // Angles from the zenith, and from the axis to directions there: the difference on its side of the zenith, and the sum, or what that
+        // leaves of a whole turn, on the other.
+        let [from, to] = [z1.acos(), z0.acos()];
+        let nearest = (from - axis).max(axis - to);
+        let farthest = match (from + axis, to + axis) {
+            (_, sum) if sum <= PI => sum,
+            (sum, _) if sum >= PI => 2.0 * PI - sum,
+            _ => PI,
+        };
+        [farthest <= half + EDGE, nearest <= half + NEAR_EDGE]
+    }
+
     /// A direction evenly from it, by a point of the unit square; density 1 over the solid angle.
     pub fn sample(&self, u: [f64; 2]) -> Vec3 {
         let [dx, dy] = warp::square_to_disk(u);
@@ -95,6 +115,30 @@ mod tests {
                 let normal = Vec3::new(tilt.to_radians().sin(), 0.0, tilt.to_radians().cos());
                 let is_behind = tilt - 90.0 > angle_deg / 2.0;
                 assert_eq!(Cone::new(Vec3::Z, angle_deg).is_behind(normal), is_behind, "{angle_deg} {tilt}");
+            }
+        }
+    }
+
+    #[test]
+    fn strips_that_it_holds_are_those_of_its_directions() {
+        for axis in [Vec3::Z, Vec3::NEG_Z, Vec3::new(0.6, 0.0, 0.8), Vec3::X, Vec3::new(0.0, 0.28, -0.96)] {
+            for angle in [0.533, 30.0, 90.0, 180.0, 250.0, 360.0] {
+                let cone = Cone::new(axis, angle);
+                for i in 0..40 {
+                    let heights = [0, 1].map(|end| f64::from(i + end) / 20.0 - 1.0);
+                    let inside = (0..=20).flat_map(|j| (0..200).map(move |k| (j, k))).filter(|&(j, k)| {
+                        let z = heights[0] + f64::from(j) / 20.0 * (heights[1] - heights[0]);
+                        let r = (1.0 - z * z).max(0.0).sqrt();
+                        let [x, y] = warp::circle(f64::from(k) / 200.0);
+                        cone.contains(Vec3::new(r * x, r * y, z))
+                    });
+                    let (count, [all, any]) = (inside.count(), cone.holds_strip(heights));
+                    assert!(!all || count == 21 * 200, "{axis} {angle} {heights:?}");
+                    assert!(any || count == 0, "{axis} {angle} {heights:?}");
+                    // With a vertical axis there is nothing in between but where the edge is.
+                    let is_edge = ((cone.height - 1.0) * -axis.z - heights[0]).abs() <= 0.05 + 1e-9;
+                    assert!(axis.z.abs() < 1.0 || is_edge || all == any, "{axis} {angle} {heights:?}");
+                }
             }
         }
     }

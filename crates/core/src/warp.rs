@@ -12,45 +12,56 @@ pub fn square_to_disk([u, v]: [f64; 2]) -> [f64; 2] {
     }
     let is_beside = a.abs() > b.abs();
     let (r, other) = if is_beside { (a, b) } else { (b, a) };
-    let [cos, sin] = within_octant(PI / 4.0 * other / r);
+    let [cos, sin] = circle_at(SECTORS as f64 * (1.0 + 0.125 * (other / r)));
     if is_beside { [r * cos, r * sin] } else { [r * sin, r * cos] }
 }
 
 /// Cosine and sine of so many turns, not negative.
 #[inline]
 pub fn circle(turns: f64) -> [f64; 2] {
-    let quarters = (4.0 * turns + 0.5) as u32;
-    let [cos, sin] = within_octant(2.0 * PI * (turns - 0.25 * f64::from(quarters)));
-    let [x, y] = if quarters.is_multiple_of(2) { [cos, sin] } else { [sin, cos] };
-    [if (quarters + 1) & 2 == 0 { x } else { -x }, if quarters & 2 == 0 { y } else { -y }]
+    circle_at(SECTORS as f64 * turns)
 }
 
-/// Cosine and sine of at most 45 degrees to either side [rad]: Taylor's series, whose remainders are below 1e-16. (The library's
-/// functions, which take any angle, are a twentieth of a picture's time.)
-fn within_octant(angle: f64) -> [f64; 2] {
-    /// 1, -1/2!, 1/4! … of the cosine, and 1, -1/3!, 1/5! … of the sine.
-    const COSINE: [f64; 9] = series(0);
-    const SINE: [f64; 9] = series(1);
-    // In pairs (Estrin): the processor can do several at once.
+/// The circle in sectors, whose middles' cosines and sines are known.
+const SECTORS: usize = 128;
+static MIDDLES: [[f64; 2]; SECTORS] = middles();
+
+/// Cosine and sine of so many sectors, not negative: Taylor's series from the middle of the nearest, whose remainders are below 1e-16. (The
+/// library's functions, which take any angle, are a twentieth of a picture's time.)
+#[inline]
+fn circle_at(sectors: f64) -> [f64; 2] {
+    let nearest = (sectors + 0.5) as u32;
+    let [cos, sin] = MIDDLES[nearest as usize % SECTORS];
+    let angle = (sectors - f64::from(nearest)) * (2.0 * PI / SECTORS as f64);
     let x = angle * angle;
-    let x2 = x * x;
-    let sum = |c: [f64; 9]| {
-        let pair = |i: usize| c[i] + c[i + 1] * x;
-        (pair(0) + pair(2) * x2) + (pair(4) + pair(6) * x2 + c[8] * (x2 * x2)) * (x2 * x2)
-    };
-    [sum(COSINE), angle * sum(SINE)]
+    let along = 1.0 - x * (1.0 / 2.0 - x * (1.0 / 24.0 - x * (1.0 / 720.0)));
+    let across = angle * (1.0 - x * (1.0 / 6.0 - x * (1.0 / 120.0 - x * (1.0 / 5040.0))));
+    [cos * along - sin * across, sin * along + cos * across]
 }
 
-/// Coefficients of the powers of x² in the series of the cosine (0) or of the sine over x (1).
-const fn series(first: u32) -> [f64; 9] {
-    let (mut found, mut term, mut i) = ([0.0; 9], 1.0, 0);
-    while i < 9 {
-        found[i] = term;
-        let n = (2 * i as u32 + first) as f64;
-        term /= -((n + 1.0) * (n + 2.0));
+const fn middles() -> [[f64; 2]; SECTORS] {
+    let (mut found, mut i) = ([[0.0; 2]; SECTORS], 0);
+    while i < SECTORS {
+        // From the nearest axis, at most 45 degrees to either side.
+        let axis = (i + SECTORS / 8) / (SECTORS / 4);
+        let angle = 2.0 * PI * (i as f64 - (axis * SECTORS / 4) as f64) / SECTORS as f64;
+        let [cos, sin] = [series(angle, 0), angle * series(angle, 1)];
+        found[i] = [[cos, sin], [-sin, cos], [-cos, -sin], [sin, -cos]][axis % 4];
         i += 1;
     }
     found
+}
+
+/// Taylor's series of the cosine (0), or of the sine over the angle (1).
+const fn series(angle: f64, first: u32) -> f64 {
+    let (mut sum, mut i) = (0.0, 10);
+    // From the smallest term: 1 - x²/(n + 1)(n + 2) (1 - x²/(n + 3)(n + 4) (1 - …
+    while i > 0 {
+        i -= 1;
+        let n = (2 * i + first) as f64;
+        sum = 1.0 - angle * angle / ((n + 1.0) * (n + 2.0)) * sum;
+    }
+    sum
 }
 
 /// Angle of a point from the x axis, 0 to pi [rad], within 1e-15; `y` is not negative, and of the origin the angle is any. (The library's

@@ -79,6 +79,8 @@ pub(crate) struct DistantSources {
     /// Suns that light: indices among `sources`.
     suns: Vec<usize>,
     dome: Option<Dome>,
+    /// The source that is seen in all of a strip of the dome, where that is one.
+    of_strips: Vec<Option<usize>>,
 }
 
 impl DistantSources {
@@ -90,10 +92,19 @@ impl DistantSources {
         }
         let lights = |s: &Distant| s.emitter.illuminates();
         let suns = (0..sources.len()).filter(|&i| sources[i].is_small() && lights(&sources[i])).collect();
-        let mut all = Self { sources, suns, dome: None };
+        let mut all = Self { sources, suns, dome: None, of_strips: Vec::new() };
         let has_dome = all.sources.iter().any(|s| s.lights_widely);
         all.dome = has_dome.then(|| Dome::new(|d| all.dome_radiance(d))).flatten();
+        let strips = all.dome.iter().flat_map(Dome::strips);
+        all.of_strips = strips.map(|heights| all.seen_in_strip(heights)).collect();
         all
+    }
+
+    /// The source that is seen in all directions between two heights, if it is known to be one.
+    fn seen_in_strip(&self, heights: [f64; 2]) -> Option<usize> {
+        let found = self.sources.iter().map(|source| source.cone.holds_strip(heights));
+        let (index, [all, _]) = found.enumerate().find(|(_, [_, any])| *any)?;
+        all.then_some(index)
     }
 
     /// The source that is seen in a direction.
@@ -153,8 +164,8 @@ impl DistantSources {
 
     /// A direction into the sky, in proportion to its brightness.
     pub fn sample_dome(&self, u: [f64; 2]) -> Option<LightSample> {
-        let (direction, pdf) = self.dome.as_ref()?.sample(u);
-        let index = self.seen(direction)?;
+        let (direction, pdf, strip) = self.dome.as_ref()?.sample(u);
+        let index = self.of_strips[strip].or_else(|| self.seen(direction))?;
         self.sources[index].lights_widely.then(|| self.light_sample(index, direction, pdf))
     }
 
@@ -174,8 +185,8 @@ impl DistantSources {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{chi_square_of_sampler, sphere_sum};
-    use sunpeak_core::gray;
+    use crate::testing::{Random, chi_square_of_sampler, sphere_sum};
+    use sunpeak_core::{gray, luminance};
     use sunpeak_sky::{CieSky, SkyDistribution};
 
     fn source(direction: Vec3, angle_deg: f64, value: f64, kind: EmitterKind) -> Distant {
@@ -229,5 +240,31 @@ mod tests {
             .map(|s| all.radiance(&s) * s.direction.z.max(0.0) / s.pdf / n as f64)
             .sum::<Rgb>();
         assert!((mean - expected).length() < 3e-3 * expected.length(), "{mean} {expected}");
+    }
+
+    /// Variance of the brightness over the density, relative to its mean squared, and its largest: drawn in proportion to the brightness
+    /// they would be 0 and 1.
+    fn spread_of_weights(all: &DistantSources) -> (f64, f64) {
+        let (mut random, n) = (Random(3), 200_000);
+        let weights: Vec<f64> = (0..n)
+            .filter_map(|_| all.sample_dome([random.next(), random.next()]))
+            .map(|sample| luminance(all.radiance(&sample)) / sample.pdf)
+            .collect();
+        let mean = weights.iter().sum::<f64>() / f64::from(n);
+        let square = weights.iter().map(|w| w * w).sum::<f64>() / f64::from(n);
+        (square / (mean * mean) - 1.0, weights.iter().fold(0.0, |a, &b| b.max(a)) / mean)
+    }
+
+    #[test]
+    fn a_sky_is_drawn_in_proportion_to_its_brightness() {
+        let (variance, largest) = spread_of_weights(&sky_and_sun());
+        assert!(variance < 0.003 && largest < 1.3, "{variance} {largest}");
+        // Bright and black, with an edge that no strip and no cell follows: a few of each lie across it.
+        let glow = || EmitterKind::Glow { max_radius: 0.0 };
+        for (axis, angle) in [(Vec3::Z, 90.0), (Vec3::X, 60.0), (Vec3::new(0.6, 0.0, 0.8), 20.0)] {
+            let (variance, largest) =
+                spread_of_weights(&DistantSources::new(vec![source(axis, angle, 1.0, glow())]));
+            assert!(variance < 0.15 && largest < 8.0, "{axis} {angle}: {variance} {largest}");
+        }
     }
 }

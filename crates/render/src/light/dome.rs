@@ -1,153 +1,160 @@
-//! Sampling a sky in proportion to its brightness: a table of the sphere in cells of equal solid angle.
+//! Sampling a sky in proportion to its brightness: the sphere in strips of equal light, and these in cells of equal light.
 
 use std::f64::consts::PI;
 use sunpeak_core::{Rgb, Vec3, luminance, warp};
 
-/// Cells are searched in lines of as many running sums as fill a cache line: the sum before the first cell, and that after each.
-const LINE: usize = 16;
-const CELLS: usize = LINE - 1;
-/// Lines of rows, and of the cells of a row. (Where lines end is compared in whole steps of four.)
-const ROW_LINES: usize = 8;
-const CELL_LINES: usize = 17;
-/// Cells between nadir and zenith, equal steps of the height z; the horizon is between two. With the azimuths: cells of 4e-4 sr, about a
-/// degree wide.
-const HEIGHTS: usize = ROW_LINES * CELLS;
-/// Cells around.
-const AZIMUTHS: usize = CELL_LINES * CELLS;
-/// The brightness of a cell is the mean of so many by so many points.
+/// The brightness is looked at in cells of equal solid angle: so many steps of the height z between nadir and zenith, the horizon between
+/// two of them, and so many around.
+const HEIGHTS: usize = 120;
+const AZIMUTHS: usize = 256;
+/// The brightness of such a cell is the mean of so many by so many points.
 const POINTS: usize = 2;
-/// Every cell gets at least this share of the mean brightness, so that no light is missed where a cell's points saw none.
+/// It counts as this share of the mean brightness at least, so that no light is missed where a cell's points saw none.
 const FLOOR: f64 = 1e-3;
+/// Brightnesses that differ by more than this factor are not put into one strip or cell: what is bright in it would be drawn too seldom.
+const LIKE: f64 = 2.0;
 
-/// A piecewise constant density over the sphere. The running sums are the density: what they lose to rounding, samples and
-/// density lose alike.
+/// A piecewise constant density over the sphere.
 #[derive(Debug)]
 pub(crate) struct Dome {
-    /// Of the rows, up to 1.
-    rows: Sums<ROW_LINES, 8>,
-    /// Of the cells within each row, up to 1.
-    cells: Vec<Sums<CELL_LINES, 16>>,
-    /// Cosine and sine of the azimuths in the middle of the cells.
-    azimuths: Vec<[f64; 2]>,
+    /// In height.
+    strips: Quantiles,
+    /// Of each strip, in turns around.
+    cells: Vec<Quantiles>,
 }
 
 impl Dome {
     /// `None` if it is black all over.
     pub fn new(radiance: impl Fn(Vec3) -> Rgb) -> Option<Self> {
-        let mut weights: Vec<f64> =
+        let weights: Vec<f64> =
             (0..HEIGHTS * AZIMUTHS).map(|i| cell_mean(&radiance, i / AZIMUTHS, i % AZIMUTHS)).collect();
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
         if mean <= 0.0 {
             return None;
         }
-        weights.iter_mut().for_each(|w| *w = w.max(FLOOR * mean));
-        let rows = weights.chunks_exact(AZIMUTHS);
-        let row_sums: Vec<f64> = rows.clone().map(|row| row.iter().sum()).collect();
-        let middle = |cell: usize| warp::circle((cell as f64 + 0.5) / AZIMUTHS as f64);
-        Some(Self {
-            rows: Sums::new(&row_sums),
-            cells: rows.map(Sums::new).collect(),
-            azimuths: (0..AZIMUTHS).map(middle).collect(),
-        })
+        let weights: Vec<f64> = weights.iter().map(|w| w.max(FLOOR * mean)).collect();
+        let rows: Vec<&[f64]> = weights.chunks_exact(AZIMUTHS).collect();
+        let sums: Vec<f64> = rows.iter().map(|row| row.iter().sum()).collect();
+        let strips = Quantiles::new(&sums);
+        let between = |[start, end]: [f64; 2]| {
+            // Rows count with as much of their height as lies in the strip.
+            let share = |row: usize| (end.min(row as f64 + 1.0) - start.max(row as f64)).max(0.0);
+            let touched = start as usize..(end.ceil() as usize).min(HEIGHTS);
+            let cell = |i: usize| touched.clone().map(|row| share(row) * rows[row][i]).sum();
+            Quantiles::new(&(0..AZIMUTHS).map(cell).collect::<Vec<f64>>())
+        };
+        let cells = (0..STEPS).map(|strip| between(strips.step(strip).map(|z| z * HEIGHTS as f64))).collect();
+        Some(Self { strips, cells })
+    }
+
+    /// The heights z between which each strip lies.
+    pub fn strips(&self) -> impl Iterator<Item = [f64; 2]> {
+        (0..STEPS).map(|strip| self.strips.step(strip).map(|z| 2.0 * z - 1.0))
     }
 
     /// Density [1/sr].
     pub fn pdf(&self, direction: Vec3) -> f64 {
-        let height = (0.5 * HEIGHTS as f64 * (direction.z + 1.0)) as u32;
-        let from_x = AZIMUTHS as f64 / (2.0 * PI) * warp::angle([direction.x, direction.y.abs()]);
-        let azimuth = if direction.y < 0.0 { AZIMUTHS as f64 - from_x } else { from_x } as u32;
-        let (row, cell) = (height.min(HEIGHTS as u32 - 1), azimuth.min(AZIMUTHS as u32 - 1));
-        density(self.rows.step(row).width(), self.cells[row as usize].step(cell).width())
+        let strip = self.strips.find(0.5 * (direction.z + 1.0));
+        let from_x = 0.5 / PI * warp::angle([direction.x, direction.y.abs()]);
+        let cells = &self.cells[strip];
+        let cell = cells.find(if direction.y < 0.0 { 1.0 - from_x } else { from_x });
+        density(self.strips.step(strip), cells.step(cell))
     }
 
-    /// A direction and its density [1/sr].
+    /// A direction, its density [1/sr], and the number of its strip.
     #[inline]
-    pub fn sample(&self, [u, v]: [f64; 2]) -> (Vec3, f64) {
-        let (row, rows) = self.rows.pick(u);
-        let (cell, cells) = self.cells[row as usize].pick(v);
-        let z = (f64::from(row) + rows.within(u)) * (2.0 / HEIGHTS as f64) - 1.0;
-        let r = (1.0 - z * z).max(0.0).sqrt();
-        let [cos, sin] = turned(self.azimuths[cell as usize], cells.within(v) - 0.5);
-        (Vec3::new(r * cos, r * sin, z), density(rows.width(), cells.width()))
+    pub fn sample(&self, [u, v]: [f64; 2]) -> (Vec3, f64, usize) {
+        let (strip, z) = self.strips.pick(u);
+        let cells = &self.cells[strip];
+        let (cell, turns) = cells.pick(v);
+        (direction(2.0 * z - 1.0, turns), density(self.strips.step(strip), cells.step(cell)), strip)
     }
 }
 
-/// Running sums of so many lines of steps, and those where lines end (all, or all but the last).
+/// How many steps hold the same light, or nearly.
+const STEPS: usize = 128;
+
+/// The unit interval in steps of like weight, so that one is drawn without a search.
 #[derive(Debug)]
-struct Sums<const LINES: usize, const ENDS: usize> {
-    ends: [f32; ENDS],
-    lines: [[f32; LINE]; LINES],
+struct Quantiles {
+    /// Where steps end, and before them where the first begins.
+    ends: [f32; STEPS + 1],
 }
 
-impl<const LINES: usize, const ENDS: usize> Sums<LINES, ENDS> {
+impl Quantiles {
+    /// Of weights that lie side by side, as wide as each other and above zero.
     fn new(weights: &[f64]) -> Self {
-        let sums = running_sums(weights);
-        let until = |step: usize| if step > 0 { sums[step - 1] } else { 0.0 };
-        Self {
-            ends: std::array::from_fn(|line| until((line + 1) * CELLS)),
-            lines: std::array::from_fn(|line| std::array::from_fn(|i| until(line * CELLS + i))),
+        let parts = parts_alike(weights);
+        let whole: f64 = weights.iter().sum();
+        let mut ends = [0.0; STEPS + 1];
+        let (mut used, mut first, mut sum) = (0, 0, 0.0);
+        for (i, part) in parts.iter().enumerate() {
+            sum += part.iter().sum::<f64>();
+            // Each part has a step of its own at least.
+            let until = i + 1 + ((STEPS - parts.len()) as f64 * (sum / whole)).round() as usize;
+            let inner = divided(part, until - used);
+            for (end, at) in ends[used + 1..=until].iter_mut().zip(inner) {
+                *end = ((first as f64 + at) / weights.len() as f64) as f32;
+            }
+            (used, first) = (until, first + part.len());
         }
+        Self { ends }
     }
 
-    /// The step into which `u` falls, by counting: there are no branches to be guessed wrong.
+    /// The step that `u` falls into, and the place there.
     #[inline]
-    fn pick(&self, u: f64) -> (u32, Step) {
-        /// The greatest number below 1, where every step has ended.
-        const LAST: f32 = 1.0 - f32::EPSILON / 2.0;
-        let u = (u as f32).min(LAST);
-        let line = passed(&self.ends, u);
-        let sums = &self.lines[line as usize];
-        let end = passed(sums, u).min(CELLS as u32);
-        (line * CELLS as u32 + end - 1, Step::to(sums, end))
+    fn pick(&self, u: f64) -> (usize, f64) {
+        let at = u * STEPS as f64;
+        let step = (at as u32).min(STEPS as u32 - 1) as usize;
+        let [start, end] = self.step(step);
+        (step, start + (at - step as f64) * (end - start))
     }
 
+    /// The step at a place.
+    fn find(&self, place: f64) -> usize {
+        self.ends[1..STEPS].partition_point(|&end| f64::from(end) <= place)
+    }
+
+    /// Where a step begins and ends.
     #[inline]
-    fn step(&self, step: u32) -> Step {
-        Step::to(&self.lines[(step / CELLS as u32) as usize], step % CELLS as u32 + 1)
+    fn step(&self, step: usize) -> [f64; 2] {
+        [self.ends[step].into(), self.ends[step + 1].into()]
     }
 }
 
-/// How many sums are not above `u`.
-#[inline]
-fn passed<const N: usize>(sums: &[f32; N], u: f32) -> u32 {
-    sums.iter().map(|&sum| u32::from(sum <= u)).sum()
-}
-
-/// The running sums before and after a step.
-struct Step {
-    before: f64,
-    after: f64,
-}
-
-impl Step {
-    #[inline]
-    fn to(sums: &[f32; LINE], end: u32) -> Self {
-        Self { before: sums[end as usize - 1].into(), after: sums[end as usize].into() }
-    }
-
-    fn width(&self) -> f64 {
-        self.after - self.before
-    }
-
-    /// Where in it, 0 to 1.
-    fn within(&self, u: f64) -> f64 {
-        ((u - self.before).max(0.0) / self.width()).min(1.0 - f64::EPSILON)
+/// Weights in parts within which neighbours are alike: in a step that is bright and dark, what is bright would be drawn too seldom.
+fn parts_alike(weights: &[f64]) -> Vec<&[f64]> {
+    let mut like = LIKE;
+    loop {
+        let parts: Vec<_> = weights.chunk_by(|a, b| a.max(*b) <= like * a.min(*b)).collect();
+        if parts.len() <= STEPS / 4 {
+            return parts;
+        }
+        like *= 2.0;
     }
 }
 
-/// Density [1/sr] of a cell, from the shares of its row, and of the cell in that.
-fn density(row: f64, cell: f64) -> f64 {
-    const CELL_SOLID_ANGLE: f64 = 4.0 * PI / (HEIGHTS * AZIMUTHS) as f64;
-    row * cell * (1.0 / CELL_SOLID_ANGLE)
+/// Where `n` steps of the same weight end, in widths of a weight.
+fn divided(weights: &[f64], n: usize) -> impl Iterator<Item = f64> {
+    let whole: f64 = weights.iter().sum();
+    let (mut i, mut sum) = (0, 0.0);
+    (1..=n).map(move |step| {
+        if step == n {
+            return weights.len() as f64;
+        }
+        let wanted = whole * (step as f64 / n as f64);
+        while sum + weights[i] < wanted {
+            sum += weights[i];
+            i += 1;
+        }
+        i as f64 + (wanted - sum) / weights[i]
+    })
 }
 
-/// A cosine and sine, turned by at most half a cell to either side: Taylor's series, whose remainders are below 1e-17.
-fn turned([cos, sin]: [f64; 2], cells: f64) -> [f64; 2] {
-    let angle = cells * (2.0 * PI / AZIMUTHS as f64);
-    let x = angle * angle;
-    let along = 1.0 - x * (1.0 / 2.0 - x * (1.0 / 24.0 - x * (1.0 / 720.0)));
-    let across = angle * (1.0 - x * (1.0 / 6.0 - x * (1.0 / 120.0)));
-    [cos * along - sin * across, sin * along + cos * across]
+/// Density [1/sr] in a cell of a strip.
+fn density([z0, z1]: [f64; 2], [start, end]: [f64; 2]) -> f64 {
+    const OF_ALL: f64 = 1.0 / (4.0 * PI * (STEPS * STEPS) as f64);
+    OF_ALL / ((z1 - z0) * (end - start))
 }
 
 fn direction(z: f64, turns: f64) -> Vec3 {
@@ -164,22 +171,4 @@ fn cell_mean(radiance: &impl Fn(Vec3) -> Rgb, row: usize, cell: usize) -> f64 {
         luminance(radiance(direction(z, (cell as f64 + a) / AZIMUTHS as f64)))
     };
     offsets.map(at).sum::<f64>() / (POINTS * POINTS) as f64
-}
-
-/// Running sums, normalised to end at 1.
-pub(super) fn running_sums(weights: &[f64]) -> Vec<f32> {
-    let whole: f64 = weights.iter().sum();
-    let mut sum = 0.0;
-    let mut add = |w: &f64| {
-        sum += w / whole;
-        sum as f32
-    };
-    weights.iter().map(&mut add).collect()
-}
-
-/// The step of running sums into which `u` falls, and where in it, 0 to 1.
-pub(super) fn pick(sums: &[f32], u: f64) -> (usize, f64) {
-    let i = sums.partition_point(|&sum| f64::from(sum) <= u).min(sums.len() - 1);
-    let before = if i > 0 { f64::from(sums[i - 1]) } else { 0.0 };
-    (i, Step { before, after: sums[i].into() }.within(u))
 }

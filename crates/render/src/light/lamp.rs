@@ -1,6 +1,5 @@
 //! Emitting surfaces in the room.
 
-use super::dome::{pick, running_sums};
 use super::{Light, LightSample};
 use crate::material::Emitter;
 use crate::shapes::{Cone, Ring, Sphere, Triangle};
@@ -189,6 +188,24 @@ impl Lamp {
             is_hidden_by_illum: self.emitter.is_hidden_by_illum(),
         }
     }
+}
+
+/// Running sums, normalised to end at 1.
+fn running_sums(weights: &[f64]) -> Vec<f32> {
+    let whole: f64 = weights.iter().sum();
+    let mut sum = 0.0;
+    let mut add = |w: &f64| {
+        sum += w / whole;
+        sum as f32
+    };
+    weights.iter().map(&mut add).collect()
+}
+
+/// The step of running sums into which `u` falls, and where in it, 0 to 1.
+fn pick(sums: &[f32], u: f64) -> (usize, f64) {
+    let i = sums.partition_point(|&sum| f64::from(sum) <= u).min(sums.len() - 1);
+    let before = if i > 0 { f64::from(sums[i - 1]) } else { 0.0 };
+    (i, ((u - before).max(0.0) / (f64::from(sums[i]) - before)).min(1.0 - f64::EPSILON))
 }
 
 #[cfg(test)]

@@ -165,14 +165,13 @@ impl Quad {
         // Sines and cosines of lunes, all times sqrt(y0² + h²) sqrt(y1² + h²); of the left one times `left` too.
         let [left_cos, left_sin] = [square * r0 * r1 + x0 * x0 * y0 * y1, x0 * height * (y1 * r0 - y0 * r1)];
         let [cos, sin] = warp::circle(u * solid_angle / (2.0 * PI));
-        let [cos, sin] =
-            [cos * left_cos - sin * left_sin, sin * left_cos + cos * left_sin].map(|at| at / left);
-        let across = (cos - square - y0 * y1) * (cos + square - y0 * y1);
+        let [cos, sin] = [cos * left_cos - sin * left_sin, sin * left_cos + cos * left_sin];
+        let across = (cos - left * (square + y0 * y1)) * (cos + left * (square - y0 * y1));
         let x = (height * sin / across.max(0.0).sqrt()).max(x0).min(x1);
-        let distance = (x * x + square).sqrt();
-        let sine = |y: f64| y / (distance * distance + y * y).sqrt();
+        let distance = x * x + square;
+        let sine = |y: f64| y / (distance + y * y).sqrt();
         let y = sine(y0) + v * (sine(y1) - sine(y0));
-        let scale = (1.0 - y * y).max(0.0).sqrt() / distance;
+        let scale = ((1.0 - y * y).max(0.0) / distance).sqrt();
         self.frame.to_world(Vec3::new(x * scale, y, -from.z * scale))
     }
 }
