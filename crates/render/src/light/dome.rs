@@ -14,6 +14,9 @@ const FLOOR: f64 = 1e-3;
 /// Brightnesses that differ by more than this factor are not put into one strip or cell: what is bright in it would be drawn too seldom.
 const LIKE: f64 = 2.0;
 
+/// So many strips, and so many cells of each, hold the same light, or nearly.
+const STEPS: usize = 128;
+
 /// A piecewise constant density over the sphere.
 #[derive(Debug)]
 pub(crate) struct Dome {
@@ -70,9 +73,6 @@ impl Dome {
         (direction(2.0 * z - 1.0, turns), density(self.strips.step(strip), cells.step(cell)), strip)
     }
 }
-
-/// How many steps hold the same light, or nearly.
-const STEPS: usize = 128;
 
 /// The unit interval in steps of like weight, so that one is drawn without a search.
 #[derive(Debug)]
