@@ -12,6 +12,7 @@ pub fn square_to_disk([u, v]: [f64; 2]) -> [f64; 2] {
     }
     let is_beside = a.abs() > b.abs();
     let (r, other) = if is_beside { (a, b) } else { (b, a) };
+    // At most an eighth to either side of a whole turn.
     let [cos, sin] = circle_at(SECTORS as f64 * (1.0 + 0.125 * (other / r)));
     if is_beside { [r * cos, r * sin] } else { [r * sin, r * cos] }
 }

@@ -259,7 +259,7 @@ mod tests {
     fn a_sky_is_drawn_in_proportion_to_its_brightness() {
         let (variance, largest) = spread_of_weights(&sky_and_sun());
         assert!(variance < 0.003 && largest < 1.3, "{variance} {largest}");
-        // Bright and black, with an edge that no strip and no cell follows: a few of each lie across it.
+        // Bright and black, with an edge that the cells in which brightness is looked at do not follow.
         let glow = || EmitterKind::Glow { max_radius: 0.0 };
         for (axis, angle) in [(Vec3::Z, 90.0), (Vec3::X, 60.0), (Vec3::new(0.6, 0.0, 0.8), 20.0)] {
             let (variance, largest) =

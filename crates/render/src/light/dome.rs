@@ -16,6 +16,8 @@ const LIKE: f64 = 2.0;
 
 /// So many strips, and so many cells of each, hold the same light, or nearly.
 const STEPS: usize = 128;
+/// Most parts of like brightness that are told apart: each takes a step at least, however dark it is.
+const MOST_PARTS: usize = STEPS / 4;
 
 /// A piecewise constant density over the sphere.
 #[derive(Debug)]
@@ -127,7 +129,7 @@ fn parts_alike(weights: &[f64]) -> Vec<&[f64]> {
     let mut like = LIKE;
     loop {
         let parts: Vec<_> = weights.chunk_by(|a, b| a.max(*b) <= like * a.min(*b)).collect();
-        if parts.len() <= STEPS / 4 {
+        if parts.len() <= MOST_PARTS {
             return parts;
         }
         like *= 2.0;

@@ -162,7 +162,7 @@ impl Quad {
         let (height, square) = (from.z.abs(), from.z * from.z);
         let left = x0 * x0 + square;
         let (r0, r1) = ((left + y0 * y0).sqrt(), (left + y1 * y1).sqrt());
-        // Sines and cosines of lunes, all times sqrt(y0² + h²) sqrt(y1² + h²); of the left one times `left` too.
+        // Sines and cosines of lunes, all times sqrt(y0² + h²) sqrt(y1² + h²) and `left`.
         let [left_cos, left_sin] = [square * r0 * r1 + x0 * x0 * y0 * y1, x0 * height * (y1 * r0 - y0 * r1)];
         let [cos, sin] = warp::circle(u * solid_angle / (2.0 * PI));
         let [cos, sin] = [cos * left_cos - sin * left_sin, sin * left_cos + cos * left_sin];
